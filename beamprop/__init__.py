@@ -1,0 +1,56 @@
+"""beamprop: acoustic beams through exactly solved layered slabs, in open space.
+
+>>> import numpy as np, beamprop as bp
+>>> slab = bp.Slab(bp.lmmd_cell(), periods=450)
+>>> widths = bp.beam_width(slab, bp.GaussianBeam(0.096), np.linspace(2000, 3000, 101))
+
+Names are loaded when they are first used, so that ``import beamprop`` and ``beamprop --help`` are instant.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from ._version import __version__
+
+if TYPE_CHECKING:
+    from . import plot
+    from .beam import GaussianBeam, Profile, Slits
+    from .datasets import provenance
+    from .homogenize import lmmd_emt, lmmd_emt_slab, standard_emt
+    from .media import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
+    from .questions import AccuracyWarning, beam_width, bloch, field, fwhm, scattering
+    from .storage import load, save
+
+_HOMES = {
+    "media": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
+    "homogenize": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
+    "beam": ("GaussianBeam", "Profile", "Slits"),
+    "questions": ("AccuracyWarning", "beam_width", "bloch", "field", "fwhm", "scattering"),
+    "datasets": ("provenance",),
+    "storage": ("load", "save"),
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+_MODULES = ("plot",)
+
+__all__ = [
+    "AIR", "AccuracyWarning", "Cell", "Fluid", "GaussianBeam", "Layer", "Membrane", "Profile", "Slab", "Slits",
+    "__version__", "beam_width", "bloch", "field", "fwhm", "lmmd_cell", "lmmd_emt", "lmmd_emt_slab", "load", "plot",
+    "provenance", "save", "scattering", "standard_emt",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOME_OF:
+        value = getattr(importlib.import_module(f"{__name__}.{_HOME_OF[name]}"), name)
+    elif name in _MODULES:
+        value = importlib.import_module(f"{__name__}.{name}")
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,120 @@
+"""The conventions, in one place: signs, the one square root with a branch, names and units.
+
+* Time dependence ``exp(-i w t)``. A passive fluid has ``Im(density) >= 0`` and ``Im(bulk_modulus) <= 0``;
+  an outgoing wave along +z is ``exp(+i kz z)`` with ``Im(kz) >= 0``.
+* SI units: m, Hz, kg/m3, Pa. Angles in degrees from the slab's normal z; x is the lateral coordinate;
+  z = 0 is the near face of the slab and +z points into it.
+* ``S(kx) = integral p(x) exp(-i kx x) dx`` and ``p(x) = (1/2 pi) integral S(kx) exp(+i kx x) dkx``.
+* The state in a layer is ``(p, q)`` with ``q = (1/rho_z) dp/dz = i w v_z``: both are continuous at a face.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+#: Every variable and coordinate of every dataset: (units, long name).
+LABELS: dict[str, tuple[str, str]] = {
+    "frequency": ("Hz", "frequency"),
+    "angle": ("degree", "angle of incidence from the normal"),
+    "x": ("m", "lateral position"),
+    "z": ("m", "depth from the near face"),
+    "kx": ("rad/m", "lateral wavenumber"),
+    "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),
+    "kz": ("rad/m", "Bloch wavenumber"),
+    "kz_over_k0": ("1", "Bloch wavenumber over that of the medium in front"),
+    "r": ("1", "complex pressure reflection coefficient"),
+    "t": ("1", "complex pressure transmission coefficient"),
+    "reflectivity": ("1", "reflectivity |r|^2"),
+    "transmissivity": ("1", "transmissivity |t|^2"),
+    "energy_transmission": ("1", "transmitted share of the incident power"),
+    "absorption": ("1", "absorbed share of the incident power"),
+    "p": ("Pa", "complex sound pressure, exp(-i w t)"),
+    "error_estimate": ("1", "estimated error over the largest |p| of the plane"),
+    "fwhm_launch": ("m", "full width at half maximum at the launch plane"),
+    "fwhm_in": ("m", "full width at half maximum of the incident beam at the near face"),
+    "fwhm_out": ("m", "full width at half maximum at the far face"),
+    "fwhm_air": ("m", "full width at half maximum after the comparison distance without a slab"),
+    "peak_out": ("Pa", "largest |p| at the far face"),
+    "centroid_out": ("m", "centroid of |p|^2 at the far face"),
+}
+
+
+def label(name: str) -> dict[str, str]:
+    """Attributes (units, long_name) of a variable or coordinate."""
+    units, long_name = LABELS[name]
+    return {"units": units, "long_name": long_name}
+
+
+def _root_cut_down(w: np.ndarray) -> np.ndarray:
+    """Square root of w with its cut along -i: sqrt(1) = 1, sqrt(-1) = i."""
+    return np.exp(0.25j * np.pi) * np.sqrt(w * -1j)
+
+
+def branch_wavenumber(omega: Any, rho_x: Any, bulk_modulus: Any) -> np.ndarray:
+    """The kx at which a half-space's kz vanishes, w sqrt(rho_x / K), with Im >= 0.
+
+    For an isotropic fluid this is its wavenumber. Where it is real, the sign is the one that a little
+    loss would give: negative where density and bulk modulus both are (backward waves).
+
+    Parameters
+    ----------
+    omega : array of float, rad/s
+    rho_x, bulk_modulus : complex, or arrays like omega; kg/m3, Pa
+
+    Returns
+    -------
+    array of complex, rad/m; infinite for rho_x = inf.
+    """
+    omega = np.asarray(omega, dtype=float)
+    rho_x = np.asarray(rho_x, dtype=complex)
+    bulk_modulus = np.asarray(bulk_modulus, dtype=complex)
+    if not np.all(np.isfinite(rho_x)):
+        return np.full(np.broadcast_shapes(omega.shape, rho_x.shape), np.inf + 0j)
+    k = omega * np.sqrt(rho_x / bulk_modulus)
+    k = np.where(k.imag < 0, -k, k)
+    backward = (k.imag == 0) & (rho_x.real < 0)
+    return np.where(backward, -np.abs(k.real) + 0j, k)
+
+
+def outgoing_kz(kx: Any, omega: Any, rho_z: Any, rho_x: Any, bulk_modulus: Any) -> np.ndarray:
+    """Wavenumber along z of the outgoing wave of a half-space: the only square root with a branch.
+
+    ``kz = sqrt(rho_z (w^2/K - kx^2/rho_x))``. On the real axis it is the root that decays or carries energy
+    along +z. Off the axis it is continued so that the cuts leave the axis upward at +k0 and downward
+    at -k0: what an arbitrarily small loss does (limiting absorption).
+
+    Parameters
+    ----------
+    kx : array of float or complex, rad/m
+    omega, rho_z, rho_x, bulk_modulus : numbers or arrays that broadcast with kx
+
+    Returns
+    -------
+    array of complex, rad/m
+    """
+    kx = np.asarray(kx, dtype=complex)
+    rho_z = np.asarray(rho_z, dtype=complex)
+    b = branch_wavenumber(omega, rho_x, bulk_modulus)
+    at_normal = _outgoing_sign(np.sqrt(rho_z / np.asarray(bulk_modulus, dtype=complex)) * omega, rho_z)
+    if not np.all(np.isfinite(b)):
+        return at_normal + 0 * kx
+    return at_normal / b * _root_of_product(kx, b)
+
+
+def _root_of_product(kx: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """sqrt(b - kx) sqrt(b + kx), cuts upward from b and downward from -b; exactly real or imaginary where it should be."""
+    root = _root_cut_down(b - kx) * _root_cut_down(b + kx)
+    real = (kx.imag == 0) & (b.imag == 0)
+    if not np.any(real):
+        return root
+    u = ((b - kx) * (b + kx)).real
+    exact = np.where(u > 0, np.sign(b.real) * np.sqrt(np.abs(u)), 1j * np.sqrt(np.abs(u)))
+    return np.where(real, exact, root)
+
+
+def _outgoing_sign(kz: np.ndarray, rho_z: np.ndarray) -> np.ndarray:
+    """+-kz, whichever decays along +z or, where it does neither, carries energy along +z."""
+    outward = np.where(kz.imag != 0, kz.imag > 0, (kz / rho_z).real >= 0)
+    return np.where(outward, kz, -kz)

@@ -1,0 +1,212 @@
+"""Lines of integration over kx, and the sums over them. The only user of an FFT library.
+
+A plain sum over equispaced real kx answers for a periodic array of beams: a lossless slab has guided modes, poles of t on
+the real axis beyond k0, beside the branch points at +-k0, and no window makes the sum converge. In open space the
+integral is split by the entire function ``chi(k) = erfc(-k/delta)/2`` (1 on the right, 0 on the left):
+
+    p(x) = (1/2 pi) integral S h chi(kx) e^{i kx x} dkx  on kx = s - i sigma   (below the poles on the right)
+         + (1/2 pi) integral S h chi(-kx) e^{i kx x} dkx on kx = s + i sigma   (above those on the left)
+
+which is the limit of vanishing absorption. h, the slab's response, is even in kx, so one line serves for both:
+
+    p(x) = sum_m w_m h(k_m) [ S(k_m) e^{i k_m x} + S(-k_m) e^{-i k_m x} ],   k_m = m ds - i sigma,  w_m = chi(k_m) ds/2 pi.
+
+Error terms, each held below the asked rtol, with W = 2 pi/ds, X the largest distance from the beam's middle, Z the
+length of the path along z and kb the smallest |kx| of a branch point:
+
+* images from the right, ``exp(-sigma W)``;
+* images from the left, ``exp(sigma W - D^2/(4/delta^2 + (Z delta/k0)^2))``, D = W - X - reach of the source: chi is a
+  Gaussian beam of its own, of waist 2/delta;
+* leak past the wrong branch point, ``exp(-(kb/delta)^2 + Z sqrt(kb sigma))``: below the axis on the left, waves grow with z;
+* rounding, ``1e-16 exp(sigma X)``;
+* the edge of the spectrum, ``S h`` at the last k.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+EPS = float(np.finfo(float).eps)
+
+
+class Line(NamedTuple):
+    """Nodes k and weights w of ``p(x) = sum w h(k) [S(k) e^{ikx} + S(-k) e^{-ikx}]``.
+
+    `step` is the spacing of Re k for an even line that begins at ``first * step``, and 0 for uneven nodes.
+    """
+
+    k: np.ndarray
+    weight: np.ndarray
+    step: float = 0.0
+    first: int = 0
+    sigma: float = 0.0
+    delta: float = 0.0
+
+
+class Reach(NamedTuple):
+    """What a line must serve: lengths in m, wavenumbers in rad/m."""
+
+    k0: float  #: wavenumber of the medium in front
+    branch: float  #: smallest |kx| of a branch point or pole, kb
+    band: float  #: largest |Re kx| of the source's spectrum
+    extent: float  #: X, from the beam's middle to the farthest point asked for
+    source: float  #: reach of the launch profile about its middle
+    path: float  #: Z, from the launch plane to the farthest plane asked for
+
+
+class OpenPlan(NamedTuple):
+    """The four numbers of an open line."""
+
+    sigma: float
+    delta: float
+    window: float
+    band: float
+
+
+def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
+    """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything."""
+    decades = math.log(20 / rtol) * tighten
+    rounding = max(2.0, math.log(rtol / (100 * EPS))) / tighten
+    k, Z = reach.k0, max(reach.path, 1e-3 / reach.k0)
+    X = max(reach.extent, reach.source)
+    delta = reach.branch / math.sqrt(decades)
+    sigma, window = rounding / (X + 30 / k), X
+    for _ in range(30):
+        spread = math.sqrt(4 / delta**2 + (Z * delta / k) ** 2)
+        guard = spread * math.sqrt(sigma * window + decades)
+        window = max(X + reach.source + guard, decades / sigma)
+        sigma = min(decades / window, rounding / X, 3.0 * k / (Z * delta))
+        delta = min(reach.branch / math.sqrt(decades + Z * math.sqrt(reach.branch * sigma)), math.sqrt(2 * k / Z))
+    window = max(window, decades / sigma)
+    return OpenPlan(sigma, delta, window, reach.band)
+
+
+def open_line(plan: OpenPlan) -> Line:
+    """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band."""
+    from scipy.special import erfc
+
+    ds = 2 * math.pi / plan.window
+    first = -math.ceil(min(plan.band, 6.5 * plan.delta) / ds)
+    k = np.arange(first, math.ceil(plan.band / ds) + 1) * ds - 1j * plan.sigma
+    chi = erfc(-k / plan.delta) / 2
+    return Line(k, chi * (ds / (2 * math.pi)), ds, first, plan.sigma, plan.delta)
+
+
+def periodic_line(period: float, band: float) -> Line:
+    """The real orders 2 pi m / period of a periodic array of beams, up to the band."""
+    ds = 2 * math.pi / period
+    k = np.arange(math.ceil(band / ds) + 1) * (ds + 0j)
+    weight = np.full(k.size, 1 / period)
+    weight[0] /= 2
+    return Line(k, weight, ds, 0)
+
+
+def propagating_line(k0: float, breaks: list[float], count: int) -> Line:
+    """Gauss nodes over |kx| < k0 in the angle alpha, kx = k0 sin(alpha), for sources of propagating waves only.
+
+    The substitution takes out the square roots at k0; `breaks` are other branch points inside, where panels meet. Both
+    ends of every panel are clustered (alpha ~ u^2 there), which takes out the root at a break too.
+    """
+    edges = np.arcsin(np.unique(np.clip([0.0, *(b / k0 for b in breaks if 0 < b < k0), 1.0], 0, 1)))
+    u, w = np.polynomial.legendre.leggauss(count)
+    u, w = (u + 1) / 2, w / 2
+    smooth, slope = u * u * (3 - 2 * u), 6 * u * (1 - u)
+    nodes, weights = [], []
+    for lo, hi in zip(edges[:-1], edges[1:], strict=True):
+        alpha = lo + (hi - lo) * smooth
+        nodes.append(k0 * np.sin(alpha))
+        weights.append(k0 * np.cos(alpha) * (hi - lo) * slope * w / (2 * np.pi))
+    return Line(np.concatenate(nodes).astype(complex), np.concatenate(weights))
+
+
+# --- sums over a line -------------------------------------------------------------------------------------
+
+
+def amplitudes(line: Line, spectrum: Any, centre: float) -> tuple[np.ndarray, np.ndarray]:
+    """w S(k) and w S(-k) about x = centre; `spectrum` is a function of kx about x = 0."""
+    right = line.weight * spectrum(line.k) * np.exp(1j * line.k * centre)
+    left = line.weight * spectrum(-line.k) * np.exp(-1j * line.k * centre)
+    return right, left
+
+
+def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """p at any x (relative to the centre): one matrix product, (Z, n) by (n, X)."""
+    phase = np.exp(1j * np.multiply.outer(line.k, x))
+    both = right[:, None] * phase
+    if np.any(left):
+        # e^{-ikx}: 1/phase, which neither overflows nor loses digits, for |Im k| |x| was chosen small
+        both += left[:, None] / phase
+    return h @ both
+
+
+@functools.lru_cache(maxsize=16)
+def _inverse_plan(rows: int, n: int) -> tuple[np.ndarray, Any]:
+    """A buffer (rows, n) and a function that transforms it in place: sum_m c_m e^{2 pi i m j/n}, unscaled."""
+    try:
+        import pyfftw
+    except ImportError:  # no wheel for this platform
+        import scipy.fft
+
+        buffer = np.empty((rows, n), complex)
+
+        def transform() -> None:
+            buffer[...] = scipy.fft.ifft(buffer, axis=1, norm="forward", overwrite_x=True)
+
+        return buffer, transform
+    buffer = pyfftw.empty_aligned((rows, n), dtype="complex128")
+    fftw = pyfftw.FFTW(buffer, buffer, axes=(1,), direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE",))
+    return buffer, fftw.execute
+
+
+def fast_length(n: int) -> int:
+    """The next length that an FFT likes: 2^a 3^b 5^c."""
+    best = 1 << max(0, (n - 1).bit_length())
+    five = 1
+    while five < best:
+        three = five
+        while three < best:
+            two = three
+            while two < n:
+                two *= 2
+            best = min(best, two)
+            three *= 3
+        five *= 5
+    return best
+
+
+def _fold(values: np.ndarray, bins: np.ndarray, n: int, out: np.ndarray) -> None:
+    """Add the columns of values into bins modulo n: exact aliasing, for the output has n points a window."""
+    out[...] = 0
+    for start in range(0, bins.size, n):
+        part = slice(start, start + n)
+        out[:, bins[part] % n] += values[:, part]
+
+
+def fft_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray, n: int) -> np.ndarray:
+    """p at even x = x_0 + j dx (relative to the centre), where line.step = 2 pi/(n dx): two FFTs a plane."""
+    out = np.empty((h.shape[0], x.size), complex)
+    rows = max(1, min(h.shape[0], 2**16 // n))
+    buffer, transform = _inverse_plan(rows, n)
+    m = line.first + np.arange(line.k.size)
+    turn = np.exp(1j * m * line.step * x[0])
+    grow = np.exp(line.sigma * x)
+    parts = [(right * turn, m, grow)]
+    if np.any(left):
+        parts.append((left / turn, -m, 1 / grow))
+    for start in range(0, h.shape[0], rows):
+        block = slice(start, min(start + rows, h.shape[0]))
+        size = block.stop - block.start
+        for number, (amplitude, bins, envelope) in enumerate(parts):
+            _fold(h[block] * amplitude, bins, n, buffer[:size])
+            buffer[size:] = 0
+            transform()
+            part = buffer[:size, :x.size] * envelope
+            if number:
+                out[block] += part
+            else:
+                out[block] = part
+    return out
