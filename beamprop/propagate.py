@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from .conventions import outgoing_kz
 from .media import FluidValues, SegmentValues, Slab, slab_values
 from .response import solve
 from .spectral import Line, Reach
-from .widths import HALF_LEVEL, Width, centroid, full_width
 
 #: How often a line is tightened before the asked rtol is given up, and the most modes that a line may have.
 LEVELS = (1.0, 1.3, 1.7, 2.2, 3.0)
@@ -28,29 +27,35 @@ Transfer = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 class Scene(NamedTuple):
-    """One slab at one frequency, as arrays."""
+    """One slab at F frequencies, as arrays; most functions here take F = 1."""
 
     segments: list[SegmentValues]
     before: FluidValues
     after: FluidValues
-    omega: np.ndarray
+    omega: np.ndarray  # (F, 1)
     thickness: float
-    k0: float
-    branches: tuple[float, ...]
+    k0: Any  # float for one frequency, (F,) for several
+    branches: tuple[Any, ...]  # |kx| of the branch points, shaped like k0
 
 
 def scene(slab: Slab, frequency: float) -> Scene:
-    """Evaluate a slab at a frequency; refuse half-spaces in which the question has no answer."""
-    f = np.array([frequency])
+    """Evaluate a slab at one frequency; refuse half-spaces in which the question has no answer."""
+    s = scenes(slab, np.array([frequency]))
+    return s._replace(k0=float(s.k0[0]), branches=tuple(float(b[0]) for b in s.branches))
+
+
+def scenes(slab: Slab, f: np.ndarray) -> Scene:
+    """Evaluate a slab at frequencies (F,)."""
     branches = []
     for name, fluid in (("before", slab.before), ("after", slab.after)):
-        k = complex(fluid.wavenumber(f)[0])
-        if k.real < 0 or (name == "before" and not (0 < k.real < math.inf)):
-            raise ValueError(f"{name}: expected a half-space that carries forward waves at {frequency} Hz, got {fluid!r}")
-        if 0 < k.real < math.inf:
-            branches.append(k.real)
+        k = fluid.wavenumber(f).real
+        bad = (k < 0) | ((k == 0) | np.isinf(k) if name == "before" else False)
+        if np.any(bad):
+            raise ValueError(f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}")
+        if np.all((k > 0) & np.isfinite(k)):
+            branches.append(k)
     return Scene(slab_values(slab, f), slab.before.at(f), slab.after.at(f), 2 * np.pi * f[:, None], slab.thickness,
-                 float(slab.before.wavenumber(f)[0].real), tuple(branches))
+                 slab.before.wavenumber(f).real, tuple(branches))
 
 
 def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
@@ -144,10 +149,9 @@ def choose_line(s: Scene, beams: list[Beam], transfer: Transfer, x: np.ndarray, 
                 plan = plan._replace(window=n * dx)
             else:
                 n = 0
-            other = plan._replace(sigma=plan.sigma * 1.1, delta=plan.delta * 0.93, window=plan.window * 1.07)
             if plan.band * plan.window > 2 * np.pi * MOST_MODES:
                 break
-            line, second = spectral.open_line(plan), spectral.open_line(other)
+            line, second = spectral.open_line(plan), spectral.open_line(plan.other())
         else:
             n = 0
             count = int((40 + 0.8 * reach.k0 * (reach.extent + reach.path)) * tighten)
@@ -203,64 +207,3 @@ def periodic_solution(s: Scene, beams: list[Beam], x: np.ndarray, period: float)
     fits = n and abs(n * dx - period) < 1e-12 * period and spectral.fast_length(n) == n
     return Solution(line, np.zeros(len(beams)), n if fits and n >= x.size else 0)
 
-
-# --- widths -----------------------------------------------------------------------------------------------
-
-
-class Cut(NamedTuple):
-    """A plane's profile: positions, samples, and p between them."""
-
-    x: np.ndarray
-    p: np.ndarray
-    evaluate: Callable[[np.ndarray], np.ndarray]
-
-
-def cut(s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float) -> Cut:
-    """|p| across the plane z in a window that holds the beam: its edges are well below half the peak."""
-    planes = np.array([z])
-    middle, half = _window(s, beam, transfer, planes)
-    for _ in range(14):
-        step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
-        x = middle + half * np.linspace(-1, 1, 2 * math.ceil(half / step) + 1)
-        solution = choose_line(s, [beam], transfer, x, planes, rtol)
-        h = transfer(solution.line.k, planes)
-        p = beam_sum(s, beam, solution, h, x)[0]
-        size = np.abs(p)
-        if max(size[0], size[-1]) < 0.2 * size.max():
-            break
-        half *= 2
-    return Cut(x, p, lambda at: point_sum(s, beam, solution.line, h, at)[0])
-
-
-def _window(s: Scene, beam: Beam, transfer: Transfer, z: np.ndarray) -> tuple[float, float]:
-    """Middle and half-width of a window for the plane z, by stationary phase: a plane wave lands at -d(arg h)/dkx."""
-    lo, hi = beam.band(s.k0, 0.3)
-    k = np.clip(np.linspace(lo, hi, 41), -0.98 * s.k0, 0.98 * s.k0)
-    small = 1e-4 * s.k0
-    h = transfer(np.concatenate([k - small, k, k + small]).astype(complex), z)[0].reshape(3, -1)
-    strong = np.abs(h[1]) > 0.1 * np.abs(h[1]).max()
-    shift = -np.imag((h[2] - h[0])[strong] / (2 * small * h[1][strong])) if strong.any() else np.zeros(1)
-    shift = np.clip(shift, -1e4 / s.k0, 1e4 / s.k0)
-    middle = beam.centre + (shift.max() + shift.min()) / 2
-    return middle, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (shift.max() - shift.min()) / 2
-
-
-def beam_row(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[float, ...]:
-    """(fwhm_launch, fwhm_in, fwhm_out, fwhm_air, peak_out, centroid_out) at one frequency and angle."""
-    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
-
-    def width(c: Cut) -> Width:
-        return full_width(c.x, c.p, level, c.evaluate)
-
-    def without(distance: float) -> float:
-        if distance == 0 and beam.entire:  # the launch profile itself
-            x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
-            return full_width(x, beam.profile(x, s.k0), level, lambda at: beam.profile(at, s.k0)).width
-        return width(cut(s, beam, free(s), distance, rtol)).width
-
-    launch = without(0.0)
-    near = launch if beam.z0 == 0 else without(-beam.z0)
-    out = cut(s, beam, through(s, beam.z0), s.thickness, rtol)
-    measured = width(out)
-    air = without(4 * math.pi / s.k0 if air_distance is None else air_distance)
-    return launch, near, measured.width, air, measured.peak, centroid(out.x, out.p)

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from . import datasets, propagate, response, widths
+from . import datasets, propagate, response, sections, widths
 from .beam import Beam, sin_degrees
 from .conventions import outgoing_kz
 from .media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+
+
+#: Wraps the items of a loop, to watch it.
+Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
 
 class AccuracyWarning(UserWarning):
@@ -229,6 +234,7 @@ def field(
     boundary: str = "open",
     period: float | None = None,
     rtol: float = 1e-8,
+    progress: Progress = iter,
 ) -> xr.Dataset:
     """Total pressure of a beam in front of, inside and behind a slab.
 
@@ -248,6 +254,8 @@ def field(
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
         Asked error of the open field over the largest |p| of each plane.
+    progress : function
+        Wraps the list of frequencies that is worked through (``tqdm.tqdm``, say).
 
     Returns
     -------
@@ -281,7 +289,7 @@ def field(
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     p = np.empty((flat.size, len(beams), z1.size, x1.size), complex)
     errors = np.full(p.shape[:2], np.nan)
-    for i, frequency_i in enumerate(flat):
+    for i, frequency_i in enumerate(progress(flat)):
         s = propagate.scene(slab, float(frequency_i))
         _field_at(s, beams, x1, z1, period, rtol, p[i], errors[i])
     _announce(p, errors, rtol)
@@ -352,6 +360,7 @@ def beam_width(
     angle: Any = None,
     rtol: float = 1e-8,
     air_distance: float | None = None,
+    progress: Progress = iter,
 ) -> xr.Dataset:
     """Widths of a beam: launched, at the near face, behind the slab, and after a distance without the slab.
 
@@ -366,6 +375,8 @@ def beam_width(
         Asked error of the fields over their largest |p|.
     air_distance : float, m, optional
         Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
+    progress : function
+        Wraps the list of blocks that is worked through (``tqdm.tqdm``, say).
 
     Returns
     -------
@@ -382,14 +393,14 @@ def beam_width(
     if air_distance is not None:
         air_distance = as_number(air_distance, "air_distance", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
-    names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air", "peak_out", "centroid_out")
+    names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
-    for i, frequency_i in enumerate(flat):
-        s = propagate.scene(slab, float(frequency_i))
-        for j, angle_j in enumerate(flat_angles):
-            row = propagate.beam_row(s, beam.at_angle(float(angle_j)), rtol, air_distance)
-            for name, value in zip(names, row, strict=True):
-                table[name][i, j] = value
+    work = [(rows, j) for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128)) for j in range(flat_angles.size)]
+    for rows, j in progress(work):
+        s = propagate.scenes(slab, flat[rows])
+        found = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        for name, values in found._asdict().items():
+            table[name][rows, j] = values
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)

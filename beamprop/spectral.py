@@ -41,59 +41,67 @@ class Line(NamedTuple):
 
     k: np.ndarray
     weight: np.ndarray
-    step: float = 0.0
+    step: Any = 0.0
     first: int = 0
-    sigma: float = 0.0
-    delta: float = 0.0
+    sigma: Any = 0.0
+    delta: Any = 0.0
 
 
 class Reach(NamedTuple):
-    """What a line must serve: lengths in m, wavenumbers in rad/m."""
+    """What a line must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
 
-    k0: float  #: wavenumber of the medium in front
-    branch: float  #: smallest |kx| of a branch point or pole, kb
-    band: float  #: largest |Re kx| of the source's spectrum
-    extent: float  #: X, from the beam's middle to the farthest point asked for
-    source: float  #: reach of the launch profile about its middle
-    path: float  #: Z, from the launch plane to the farthest plane asked for
+    k0: Any  #: wavenumber of the medium in front
+    branch: Any  #: smallest |kx| of a branch point or pole, kb
+    band: Any  #: largest |Re kx| of the source's spectrum
+    extent: Any  #: X, from the beam's middle to the farthest point asked for
+    source: Any  #: reach of the launch profile about its middle
+    path: Any  #: Z, from the launch plane to the farthest plane asked for
 
 
 class OpenPlan(NamedTuple):
-    """The four numbers of an open line."""
+    """The four numbers of an open line; floats, or arrays (F,)."""
 
-    sigma: float
-    delta: float
-    window: float
-    band: float
+    sigma: Any
+    delta: Any
+    window: Any
+    band: Any
+
+    def other(self) -> OpenPlan:
+        """A plan that shares no number with this one, to judge it by."""
+        return OpenPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
 def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
     """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything."""
     decades = math.log(20 / rtol) * tighten
     rounding = max(2.0, math.log(rtol / (100 * EPS))) / tighten
-    k, Z = reach.k0, max(reach.path, 1e-3 / reach.k0)
-    X = max(reach.extent, reach.source)
+    k, Z = reach.k0, np.maximum(reach.path, 1e-3 / reach.k0)
+    X = np.maximum(reach.extent, reach.source)
     delta = reach.branch / math.sqrt(decades)
     sigma, window = rounding / (X + 30 / k), X
     for _ in range(30):
-        spread = math.sqrt(4 / delta**2 + (Z * delta / k) ** 2)
-        guard = spread * math.sqrt(sigma * window + decades)
-        window = max(X + reach.source + guard, decades / sigma)
-        sigma = min(decades / window, rounding / X, 3.0 * k / (Z * delta))
-        delta = min(reach.branch / math.sqrt(decades + Z * math.sqrt(reach.branch * sigma)), math.sqrt(2 * k / Z))
-    window = max(window, decades / sigma)
-    return OpenPlan(sigma, delta, window, reach.band)
+        spread = np.sqrt(4 / delta**2 + (Z * delta / k) ** 2)
+        guard = spread * np.sqrt(sigma * window + decades)
+        window = np.maximum(X + reach.source + guard, decades / sigma)
+        sigma = np.minimum(np.minimum(decades / window, rounding / X), 3.0 * k / (Z * delta))
+        steep = reach.branch / np.sqrt(decades + Z * np.sqrt(reach.branch * sigma))
+        delta = np.minimum(steep, np.sqrt(2 * k / Z))
+    return OpenPlan(sigma, delta, np.maximum(window, decades / sigma), reach.band)
 
 
 def open_line(plan: OpenPlan) -> Line:
-    """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band."""
+    """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
+
+    Of arrays (F,), one line a frequency with the same m for all: k and weight are (F, n).
+    """
     from scipy.special import erfc
 
-    ds = 2 * math.pi / plan.window
-    first = -math.ceil(min(plan.band, 6.5 * plan.delta) / ds)
-    k = np.arange(first, math.ceil(plan.band / ds) + 1) * ds - 1j * plan.sigma
-    chi = erfc(-k / plan.delta) / 2
-    return Line(k, chi * (ds / (2 * math.pi)), ds, first, plan.sigma, plan.delta)
+    ds = 2 * math.pi / np.asarray(plan.window)
+    first = -math.ceil(np.max(np.minimum(plan.band, 6.5 * plan.delta) / ds))
+    m = np.arange(first, math.ceil(np.max(plan.band / ds)) + 1)
+    k = ds[..., None] * m - 1j * np.asarray(plan.sigma)[..., None]
+    chi = erfc(-k / np.asarray(plan.delta)[..., None]) / 2
+    return Line(k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta)
 
 
 def periodic_line(period: float, band: float) -> Line:
@@ -106,14 +114,17 @@ def periodic_line(period: float, band: float) -> Line:
 
 
 def propagating_line(k0: float, breaks: list[float], count: int) -> Line:
-    """Gauss nodes over |kx| < k0 in the angle alpha, kx = k0 sin(alpha), for sources of propagating waves only.
+    """About `count` Gauss nodes over |kx| < k0, for sources of propagating waves only.
 
-    The substitution takes out the square roots at k0; `breaks` are other branch points inside, where panels meet. Both
-    ends of every panel are clustered (alpha ~ u^2 there), which takes out the root at a break too.
+    The substitution kx = k0 sin(alpha) takes out the square roots at k0; `breaks` are other branch points inside, where
+    intervals meet. alpha goes as u^2 at both ends of every interval, which takes out a root there too; u is divided into
+    panels of 24 nodes.
     """
     edges = np.arcsin(np.unique(np.clip([0.0, *(b / k0 for b in breaks if 0 < b < k0), 1.0], 0, 1)))
-    u, w = np.polynomial.legendre.leggauss(count)
-    u, w = (u + 1) / 2, w / 2
+    g, v = np.polynomial.legendre.leggauss(24)
+    panels = max(2, math.ceil(count / 24))
+    u = ((np.arange(panels)[:, None] + (g + 1) / 2) / panels).ravel()
+    w = np.tile(v / 2 / panels, panels)
     smooth, slope = u * u * (3 - 2 * u), 6 * u * (1 - u)
     nodes, weights = [], []
     for lo, hi in zip(edges[:-1], edges[1:], strict=True):
@@ -160,6 +171,15 @@ def _inverse_plan(rows: int, n: int) -> tuple[np.ndarray, Any]:
     buffer = pyfftw.empty_aligned((rows, n), dtype="complex128")
     fftw = pyfftw.FFTW(buffer, buffer, axes=(1,), direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE",))
     return buffer, fftw.execute
+
+
+def transform(coefficients: np.ndarray) -> np.ndarray:
+    """sum_m c_m e^{2 pi i m j/n} along the last axis, unscaled."""
+    flat = coefficients.reshape(-1, coefficients.shape[-1])
+    buffer, execute = _inverse_plan(*flat.shape)
+    buffer[...] = flat
+    execute()
+    return buffer.reshape(coefficients.shape).copy()
 
 
 def fast_length(n: int) -> int:

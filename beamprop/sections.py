@@ -1,0 +1,282 @@
+"""Profiles of a beam across one plane, measured: all frequencies at once, and a slow path for what does not fit.
+
+The fast path samples p on the whole window of an open line by one small FFT a frequency, finds the peak and the half
+level on that grid, and places them by Newton's method on the exact sum over the modes. A second line of other
+parameters judges the values there. Whatever fails a test (error above rtol, a window too narrow, a spectrum that is not
+entire) is done again alone, with a window that grows until it holds the beam.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from . import propagate, spectral
+from .beam import Beam
+from .conventions import outgoing_kz
+from .propagate import Scene, Transfer
+from .response import solve
+from .spectral import Line, OpenPlan, Reach
+from .widths import HALF_LEVEL, centroid, full_width
+
+#: h(kx) at one plane for each frequency: (F, n) -> (F, n).
+Plane = Callable[[np.ndarray], np.ndarray]
+
+
+#: A window holds the beam when |p| at its ends is below this share of the level asked for. Not lower: the guided waves of a
+#: lossless slab run on along it without end.
+EDGE = 0.8
+
+
+class Measures(NamedTuple):
+    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m]."""
+
+    width: np.ndarray
+    peak: np.ndarray
+    centroid: np.ndarray
+
+
+def far_face(s: Scene, z0: float) -> Plane:
+    """Transfer from the launch plane z0 to the far face."""
+    def plane(kx: np.ndarray) -> np.ndarray:
+        kz = outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before))
+        return solve(s.segments, s.before, s.after, s.omega, kx).t * np.exp(-1j * kz * z0)
+
+    return plane
+
+
+def without(s: Scene, distance: np.ndarray) -> Plane:
+    """Transfer over distances (F,) in the medium in front."""
+    def plane(kx: np.ndarray) -> np.ndarray:
+        return np.exp(1j * outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before)) * distance[:, None])
+
+    return plane
+
+
+def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width (F,) of windows that hold the beam, by stationary phase.
+
+    A plane wave of amplitude h lands at -d(arg h)/dkx; the beam's strong plane waves span the window.
+    """
+    lo, hi = beam.band(s.k0, 0.3)  # type: ignore[arg-type]
+    k0 = s.k0[:, None]
+    k = np.clip(np.linspace(lo, hi, 41, axis=-1), -0.98 * k0, 0.98 * k0)
+    small = 1e-4 * k0
+    h = plane(np.concatenate([k - small, k, k + small], axis=-1).astype(complex))
+    low, middle, high = np.split(h, 3, axis=-1)
+    size = np.abs(middle)
+    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > 0)
+    slope = np.imag((high - low) / np.where(strong, 2 * small * middle, 1.0))
+    shift = np.clip(np.where(strong, -slope, 0.0), -1e4 / k0, 1e4 / k0)
+    most, least = shift.max(-1, where=strong, initial=-np.inf), shift.min(-1, where=strong, initial=np.inf)
+    most, least = (np.where(np.isfinite(v), v, 0.0) for v in (most, least))
+    return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
+
+
+class Modes(NamedTuple):
+    """p(x) = sum right e^{ikx} + left e^{-ikx}, x from the beam's centre; arrays (F, n)."""
+
+    line: Line
+    right: np.ndarray
+    left: np.ndarray
+
+    def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """p, dp/dx and d2p/dx2 at positions (F, m)."""
+        k = self.line.k[:, None, :]
+        phase = np.exp(1j * k * x[..., None])
+        a, b = self.right[:, None] * phase, self.left[:, None] / phase
+        return (a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1)
+
+
+def _modes(s: Scene, beam: Beam, plane: Plane, line: Line) -> Modes:
+    h = plane(line.k)
+    right, left = spectral.amplitudes(line, lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    return Modes(line, right * h, left * h)
+
+
+def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
+    lo, hi = beam.band(s.k0, rtol * 1e-2)  # type: ignore[arg-type]
+    source = beam.reach(rtol * 1e-2)
+    extent = np.abs(middle - beam.centre) + half
+    branch = np.min(np.stack(s.branches), axis=0)
+    return spectral.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
+
+
+def measure(s: Scene, slow: Callable[[int], tuple[Scene, Transfer, float]], beam: Beam, plane: Plane, path: Any,
+            rtol: float) -> Measures:
+    """Width, peak and centroid of the profiles across one plane per frequency.
+
+    `path` is the length along z (F,); `slow(i)` gives what the slow path needs for frequency i.
+    """
+    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+    count = s.omega.shape[0]
+    out = Measures(*(np.full(count, np.nan) for _ in Measures._fields))
+    good = np.zeros(count, bool)
+    if beam.entire:
+        middle, half = landing(s, beam, plane)
+        plan = _plan(s, beam, path, middle, half, rtol)
+        if np.max(plan.band * plan.window) < 2 * np.pi * 20_000:
+            modes = _modes(s, beam, plane, spectral.open_line(plan))
+            second = _modes(s, beam, plane, spectral.open_line(plan.other()))
+            out, good = _measured(modes, second, plan, middle - beam.centre, half, level, rtol)
+            out = out._replace(centroid=out.centroid + beam.centre)
+    for i in np.flatnonzero(~good):
+        one, transfer, z = slow(int(i))
+        out.width[i], out.peak[i], out.centroid[i] = _measured_alone(one, beam, transfer, z, rtol, level)
+    return out
+
+
+def _sampled(modes: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
+    """p on an even grid over each whole window: x and p, (F, n)."""
+    line = modes.line
+    m = line.first + np.arange(line.k.shape[-1])
+    n = spectral.fast_length(3 * int(np.max(np.abs(m))) + 1)
+    x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
+    bins = np.zeros((2, *line.k.shape[:-1], n), complex)
+    turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
+    bins[0][:, m % n] = modes.right * turn
+    bins[1][:, -m % n] = modes.left * np.conj(turn)
+    right, left = spectral.transform(bins)
+    grow = np.exp(line.sigma[:, None] * x)
+    return x, right * grow + left / grow
+
+
+def _measured(modes: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float,
+              rtol: float) -> tuple[Measures, np.ndarray]:
+    """Measures from the samples and Newton's method, and where they can be trusted."""
+    x, p = _sampled(modes, plan)
+    valid = np.abs(x - middle[:, None]) <= half[:, None]
+    size = np.where(valid, np.abs(p), 0.0)
+    rows = np.arange(size.shape[0])
+    top = np.argmax(size, axis=-1)
+    ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
+    dx = plan.window / x.shape[-1]
+    position = _newton_peak(modes, x[rows, top], dx)
+    peak = np.abs(modes.at(position[:, None])[0][:, 0])
+    edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
+    good = (edge < EDGE * level * peak) & (peak > 0)
+    below = valid & (np.abs(p) < level * peak[:, None])
+    index = np.arange(size.shape[-1])
+    left = np.max(np.where(below & (index < top[:, None]), index, -1), axis=-1)
+    right = np.min(np.where(below & (index > top[:, None]), index, index.size), axis=-1)
+    good &= (left >= 0) & (right < index.size)
+    left, right = np.where(good, left, 0), np.where(good, right, index.size - 1)
+    outer = np.stack([x[rows, left], x[rows, right]], axis=-1)
+    inner = np.stack([np.minimum(x[rows, np.minimum(left + 1, index.size - 1)], position),
+                      np.maximum(x[rows, np.maximum(right - 1, 0)], position)], axis=-1)
+    edges = _newton_level(modes, inner, outer, level * peak)
+    check = np.concatenate([edges, position[:, None]], axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        error = 1.5 * np.max(np.abs(modes.at(check)[0] - second.at(check)[0]), axis=-1) / peak
+        power = np.where(valid, np.abs(p) ** 2, 0.0)
+        place = (power * x).sum(-1) / power.sum(-1)
+    good &= np.nan_to_num(error, nan=1.0) <= rtol
+    return Measures(edges[:, 1] - edges[:, 0], peak, place), good
+
+
+def _newton_peak(modes: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
+    """Where |p|^2 is largest within a sample of start."""
+    x = start
+    for _ in range(5):
+        p, slope, bend = (v[:, 0] for v in modes.at(x[:, None]))
+        first = (p.conj() * slope).real
+        curve = (np.abs(slope) ** 2 + (p.conj() * bend).real)
+        step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
+        x = np.clip(x + step, start - dx, start + dx)
+    return x
+
+
+def _newton_level(modes: Modes, inner: np.ndarray, outer: np.ndarray, target: np.ndarray) -> np.ndarray:
+    """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
+    x = (inner + outer) / 2
+    for _ in range(9):
+        p, slope, _ = modes.at(x)
+        excess = np.abs(p) ** 2 - target[:, None] ** 2
+        inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
+        steep = 2 * (p.conj() * slope).real
+        guess = x - excess / np.where(steep == 0, 1.0, steep)
+        low, high = np.minimum(inner, outer), np.maximum(inner, outer)
+        x = np.where((guess >= low) & (guess <= high), guess, (inner + outer) / 2)
+    return x
+
+
+# --- one at a time ----------------------------------------------------------------------------------------
+
+
+def _measured_alone(s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float) -> tuple:
+    """Width, peak and centroid across the plane z, in a window that grows until its edges are below the level."""
+    planes = np.array([z])
+    batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
+    middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
+    for _ in range(9):
+        step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
+        x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
+        solution = propagate.choose_line(s, [beam], transfer, x, planes, rtol)
+        h = transfer(solution.line.k, planes)
+        p = propagate.beam_sum(s, beam, solution, h, x)[0]
+        size = np.abs(p)
+        if max(size[0], size[-1]) < EDGE * level * size.max():
+            break
+        half *= 2
+    evaluate = _between(s, beam, solution.line, h)
+    found = full_width(x, p, level, evaluate)
+    return found.width, found.peak, centroid(x, p)
+
+
+def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda at: propagate.point_sum(s, beam, line, h, at)[0]
+
+
+# --- the row of a table of widths -------------------------------------------------------------------------
+
+
+class Row(NamedTuple):
+    """What `beam_width` reports, (F,) each, in its order."""
+
+    fwhm_launch: np.ndarray
+    fwhm_in: np.ndarray
+    fwhm_out: np.ndarray
+    fwhm_air: np.ndarray
+    peak_out: np.ndarray
+    centroid_out: np.ndarray
+
+
+def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
+    """Widths at all frequencies of a scene, at one angle."""
+    wavelengths = 2 * np.pi / s.k0
+
+    def one(i: int) -> Scene:
+        return Scene([seg._replace(layers=seg.layers._replace(**_at(seg.layers, i))) for seg in s.segments],
+                     type(s.before)(*(v[i:i + 1] for v in s.before)), type(s.after)(*(v[i:i + 1] for v in s.after)),
+                     s.omega[i:i + 1], s.thickness, float(s.k0[i]), tuple(float(b[i]) for b in s.branches))
+
+    def free(distance: np.ndarray) -> np.ndarray:
+        if not np.any(distance) and beam.entire:
+            return _launch_widths(s, beam)
+        alone = s._replace(branches=(s.k0,))
+        return measure(alone, lambda i: (s1 := one(i)._replace(branches=(float(s.k0[i]),)), propagate.free(s1),
+                                         float(distance[i])), beam, without(s, distance), distance, rtol).width
+
+    launch = free(np.zeros(s.k0.shape))
+    near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
+    far = measure(s, lambda i: (s1 := one(i), propagate.through(s1, beam.z0), s.thickness), beam, far_face(s, beam.z0),
+                  s.thickness - beam.z0, rtol)
+    air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
+    return Row(launch, near, far.width, air, far.peak, far.centroid)
+
+
+def _at(layers: Any, i: int) -> dict[str, np.ndarray]:
+    """Frequency i of a cell's values."""
+    return {n: getattr(layers, n)[:, i:i + 1] for n in ("mass", "compliance", "mobility", "vanishing")}
+
+
+def _launch_widths(s: Scene, beam: Beam) -> np.ndarray:
+    """Widths of the launch profile itself; |p| does not depend on the frequency."""
+    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+    k0 = float(s.k0[0])
+    x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
+    found = full_width(x, beam.profile(x, k0), level, lambda at: beam.profile(at, k0))
+    return np.full(s.k0.shape, found.width)
