@@ -35,9 +35,30 @@ _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 _MODULES = ("plot",)
 
 __all__ = [
-    "AIR", "AccuracyWarning", "Cell", "Fluid", "GaussianBeam", "Layer", "Membrane", "Profile", "Slab", "Slits",
-    "__version__", "beam_width", "bloch", "field", "fwhm", "lmmd_cell", "lmmd_emt", "lmmd_emt_slab", "load", "plot",
-    "provenance", "save", "scattering", "standard_emt",
+    "AIR",
+    "AccuracyWarning",
+    "Cell",
+    "Fluid",
+    "GaussianBeam",
+    "Layer",
+    "Membrane",
+    "Profile",
+    "Slab",
+    "Slits",
+    "__version__",
+    "beam_width",
+    "bloch",
+    "field",
+    "fwhm",
+    "lmmd_cell",
+    "lmmd_emt",
+    "lmmd_emt_slab",
+    "load",
+    "plot",
+    "provenance",
+    "save",
+    "scattering",
+    "standard_emt",
 ]
 
 

@@ -181,7 +181,7 @@ def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarr
     block = max(1, 2_000_000 // max(1, x.size))
     flat = k.ravel()
     for start in range(0, k.size, block):
-        out[start:start + block] = np.exp(-1j * np.multiply.outer(flat[start:start + block], x)) @ weights
+        out[start : start + block] = np.exp(-1j * np.multiply.outer(flat[start : start + block], x)) @ weights
     return out.reshape(k.shape)
 
 
@@ -230,9 +230,9 @@ class Profile(_Tilted):
 
             even = np.linspace(x[0], x[-1], round((x[-1] - x[0]) / steps.min()) + 1)
             x, p = even, CubicSpline(x, p)(even)
-        for name, value in (("x", x), ("p", p)):
-            value.setflags(write=False)
-            object.__setattr__(self, name, value)
+        for key, array in (("x", x), ("p", p)):
+            array.setflags(write=False)
+            object.__setattr__(self, key, array)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Profile) and self._key() == other._key()
@@ -277,8 +277,10 @@ class Profile(_Tilted):
         k = 2 * np.pi * np.fft.fftfreq(size, self.spacing)
         strong = np.abs(np.fft.fft(self.p, size))
         used = np.abs(k[strong > tolerance * strong.max()])
-        middle, half = k0 * float(sin_degrees(self.angle)), min(used.max() + 2 * np.pi / (size * self.spacing),
-                                                                 np.pi / self.spacing)
+        middle, half = (
+            k0 * float(sin_degrees(self.angle)),
+            min(used.max() + 2 * np.pi / (size * self.spacing), np.pi / self.spacing),
+        )
         return middle - half, middle + half
 
 

@@ -1,7 +1,7 @@
 """The command `beamprop`: field, width, spectrum, bloch. The paper's parameters are the defaults.
 
-Data go to stdout, progress and warnings to stderr; wrong use exits with 2. Everything heavy is imported inside the commands, so
-that ``beamprop --help`` is instant.
+Data go to stdout, progress and warnings to stderr; wrong use exits with 2. Everything heavy is imported inside the
+commands, so that ``beamprop --help`` is instant.
 """
 
 from __future__ import annotations
@@ -106,16 +106,27 @@ CELL = _all(
 SLAB = _all(
     CELL,
     _option("--periods", default=450, text="Periods of the slab."),
-    _option("--medium", default="exact", kind=click.Choice(["exact", "lmmd-emt", "lmmd-emt-bare", "standard-emt", "none"]),
-            text="The layers themselves, an effective medium (bare: without the interface term), or background only."),
+    _option(
+        "--medium",
+        default="exact",
+        kind=click.Choice(["exact", "lmmd-emt", "lmmd-emt-bare", "standard-emt", "none"]),
+        text="The layers themselves, an effective medium (bare: without the interface term), or background only.",
+    ),
     click.option("--after-density", type=Number(), help="Of the half-space behind, if it differs [kg/m3]."),
     click.option("--after-speed", type=Number(), help="Of the half-space behind, if it differs [m/s]."),
 )
 BEAM = _all(
     _option("--fwhm", default=0.096, text="Full width at half maximum at the launch plane [m]."),
-    _option("--angle", default="0", kind=Axis(), text="From the normal [degree]; an axis: a, a,b,c or start:stop:count."),
+    _option(
+        "--angle", default="0", kind=Axis(), text="From the normal [degree]; an axis: a, a,b,c or start:stop:count."
+    ),
     _option("--x0", default=0.0, text="Middle of the beam [m]."),
-    _option("--width-of", default="pressure", kind=click.Choice(["pressure", "intensity"]), text="What fwhm is the width of."),
+    _option(
+        "--width-of",
+        default="pressure",
+        kind=click.Choice(["pressure", "intensity"]),
+        text="What fwhm is the width of.",
+    ),
     _option("--form", default="launch", kind=click.Choice(["launch", "rotated"]), text="Kind of oblique beam."),
     _option("--rtol", default=1e-8, text="Asked relative error."),
 )
@@ -132,8 +143,8 @@ OUTPUT = _all(
 def main() -> None:
     """Acoustic beams through exactly solved layered slabs, in open space.
 
-    Without options, each command answers for the slab of the paper: 450 periods of 10 layers, designed for 2500 Hz. An axis is
-    a number, numbers with commas between, or start:stop:count.
+    Without options, each command answers for the slab of the paper: 450 periods of 10 layers, designed for 2500 Hz. An
+    axis is a number, numbers with commas between, or start:stop:count.
     """
 
 
@@ -175,6 +186,7 @@ def _beam(o: dict[str, Any], z0: float = 0.0) -> Any:
 
 def _progress(quiet: bool, what: str) -> Callable[[Iterable[Any]], Iterable[Any]]:
     """A bar on stderr for work that takes more than a second."""
+
     def wrap(items: Iterable[Any]) -> Iterable[Any]:
         from tqdm import tqdm
 
@@ -186,8 +198,12 @@ def _progress(quiet: bool, what: str) -> Callable[[Iterable[Any]], Iterable[Any]
 # --- from datasets to stdout and files --------------------------------------------------------------------
 
 
-def _answer(o: dict[str, Any], ask: Callable[[], xr.Dataset], draw: Callable[[xr.Dataset], Any],
-            summary: Callable[[xr.Dataset], str]) -> None:
+def _answer(
+    o: dict[str, Any],
+    ask: Callable[[], xr.Dataset],
+    draw: Callable[[xr.Dataset], Any],
+    summary: Callable[[xr.Dataset], str],
+) -> None:
     """Ask, write, draw, print. A ValueError is wrong use: exit 2."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -247,8 +263,10 @@ def _table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0, most: int
     frame = ds[list(names)].to_dataframe().reset_index() if dims else None
     if frame is None:
         return "\n".join(f"{n:22s} {float(ds[n]) * scale:.6g}" for n in names)
-    keep = frame.iloc[sorted({round(i * (len(frame) - 1) / max(1, most - 1)) for i in range(most)})] if len(frame) > most else frame
-    keep = keep[[*dims, *names]].copy()
+    rows = list(range(len(frame)))
+    if len(frame) > most:
+        rows = sorted({round(i * (len(frame) - 1) / (most - 1)) for i in range(most)})
+    keep = frame.iloc[rows][[*dims, *names]].copy()
     for n in names:
         keep[n] = keep[n] * scale
     left_out = f"\n({len(frame)} rows; {len(keep)} shown)" if len(keep) < len(frame) else ""
@@ -267,11 +285,19 @@ def _table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0, most: int
 @OUTPUT
 def width(**o: Any) -> None:
     """Beam widths against frequency or angle (the paper's Fig. 6)."""
+
     def ask() -> xr.Dataset:
         from .questions import beam_width
 
-        return beam_width(_slab(o), _beam(o, o["z0"]), o["frequency"], o["angle"], o["rtol"], o["air_distance"],
-                          progress=_progress(o["quiet"], "widths"))
+        return beam_width(
+            _slab(o),
+            _beam(o, o["z0"]),
+            o["frequency"],
+            o["angle"],
+            o["rtol"],
+            o["air_distance"],
+            progress=_progress(o["quiet"], "widths"),
+        )
 
     def draw(ds: xr.Dataset) -> Any:
         from . import plot
@@ -294,20 +320,33 @@ def _needs_axis(o: dict[str, Any], *names: str) -> None:
 @_option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
 @_option("--z0", default=-0.1, text="Launch plane, at or in front of the near face at 0 [m].")
 @_option("--x", default="-0.7:0.7:561", kind=Axis(), text="Lateral positions [m], an axis.")
-@click.option("--z", type=Axis(), help="Depths [m], an axis; from the launch plane to a little behind the slab by default.")
+@click.option(
+    "--z", type=Axis(), help="Depths [m], an axis; from the launch plane to a little behind the slab by default."
+)
 @_option("--boundary", default="open", kind=click.Choice(["open", "periodic"]), text="One beam, or a periodic array.")
 @click.option("--period", type=float, help="Of the periodic array [m].")
 @_option("--quantity", default="abs", kind=click.Choice(["abs", "real"]), text="What --plot draws.")
 @OUTPUT
 def field(**o: Any) -> None:
     """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
+
     def ask() -> xr.Dataset:
         from .questions import field
 
         slab = _slab(o)
         z = o["z"] or _spaced(o["z0"], 1.25 * slab.thickness, 561)
-        return field(slab, _beam(o, o["z0"]), o["frequency"], o["x"], z, o["angle"], o["boundary"], o["period"], o["rtol"],
-                     progress=_progress(o["quiet"], "fields"))
+        return field(
+            slab,
+            _beam(o, o["z0"]),
+            o["frequency"],
+            o["x"],
+            z,
+            o["angle"],
+            o["boundary"],
+            o["period"],
+            o["rtol"],
+            progress=_progress(o["quiet"], "fields"),
+        )
 
     def draw(ds: xr.Dataset) -> Any:
         from . import plot
@@ -333,13 +372,19 @@ def _field_summary(ds: xr.Dataset) -> str:
 @click.option("--kx-over-k0", type=Axis(), help="An axis; 0:5:1001 by default.")
 @click.option("--kx", type=Axis(), help="[rad/m], an axis.")
 @click.option("--angle", type=Axis(), help="[degree], an axis.")
-@_option("--quantity", default="transmissivity",
-         kind=click.Choice(["transmissivity", "reflectivity", "energy_transmission", "absorption"]), text="What --plot draws.")
+@_option(
+    "--quantity",
+    default="transmissivity",
+    kind=click.Choice(["transmissivity", "reflectivity", "energy_transmission", "absorption"]),
+    text="What --plot draws.",
+)
 @click.option("--log", is_flag=True, help="Draw on a logarithmic scale.")
 @OUTPUT
 def spectrum(**o: Any) -> None:
     """Plane-wave reflection and transmission against kx or angle (the paper's Figs. 2 and 3)."""
-    axes = {n: o[n] for n in ("kx_over_k0", "kx", "angle") if o[n] is not None} or {"kx_over_k0": _spaced(0.0, 5.0, 1001)}
+    axes = {n: o[n] for n in ("kx_over_k0", "kx", "angle") if o[n] is not None} or {
+        "kx_over_k0": _spaced(0.0, 5.0, 1001)
+    }
 
     def ask() -> xr.Dataset:
         from .questions import scattering
@@ -364,6 +409,7 @@ def spectrum(**o: Any) -> None:
 @OUTPUT
 def bloch(**o: Any) -> None:
     """Bloch wavenumber of the infinite medium against kx: equifrequency contours (the paper's Fig. 4)."""
+
     def ask() -> xr.Dataset:
         from .questions import bloch
 

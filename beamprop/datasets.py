@@ -22,8 +22,17 @@ from .conventions import LABELS, label
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
 _RECORDS: dict[str, type] = {
     cls.__name__: cls
-    for cls in (_media.Fluid, _media.Layer, _media.Membrane, _media.Cell, _media.Slab, _beam.GaussianBeam,
-                _beam.Profile, _beam.Slits, *_homogenize.FUNCTIONS)
+    for cls in (
+        _media.Fluid,
+        _media.Layer,
+        _media.Membrane,
+        _media.Cell,
+        _media.Slab,
+        _beam.GaussianBeam,
+        _beam.Profile,
+        _beam.Slits,
+        *_homogenize.FUNCTIONS,
+    )
 }
 
 
@@ -51,8 +60,8 @@ def describe(value: Any, frequency: np.ndarray) -> Any:
     raise TypeError(f"no record for {type(value).__name__}")
 
 
-def _number(value: float) -> float | str:
-    return value if np.isfinite(value) else str(value)
+def _number(value: Any) -> float | str:
+    return float(value) if np.isfinite(value) else str(float(value))
 
 
 def rebuild(record: Any) -> Any:
@@ -89,8 +98,7 @@ def make(
     settings
         Structure, beam and arguments to record.
     """
-    record = {"beamprop": __version__, "question": question,
-              **{k: describe(v, frequency) for k, v in settings.items()}}
+    record = {"beamprop": __version__, "question": question, **{k: describe(v, frequency) for k, v in settings.items()}}
     labelled = {n: (d, v, label(n) if n in LABELS else {}) for n, (d, v) in variables.items()}
     axes = {n: (d, v, label(n)) for n, (d, v) in coords.items()}
     attrs = {"provenance": json.dumps(record), "convention": "exp(-i w t), SI units, z = 0 at the near face"}

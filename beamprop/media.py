@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .conventions import branch_wavenumber
 
-Property = Union[complex, Callable[[np.ndarray], np.ndarray]]
+Property = complex | Callable[[np.ndarray], np.ndarray]
 
 
 def as_number(value: Any, name: str, *, positive: bool = False) -> float:
@@ -95,8 +95,11 @@ class Fluid:
             value = getattr(self, name)
             if value is not None and not callable(value):
                 object.__setattr__(self, name, _as_complex(value, name))
-        numbers = {n: v for n in ("density", "bulk_modulus", "density_x")
-                   if (v := getattr(self, n)) is not None and not callable(v)}
+        numbers = {
+            n: v
+            for n in ("density", "bulk_modulus", "density_x")
+            if (v := getattr(self, n)) is not None and not callable(v)
+        }
         self._check(**numbers)
 
     def _check(self, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:

@@ -42,7 +42,9 @@ def _chosen(quantity: str, options: tuple[str, ...]) -> None:
         raise ValueError(f"quantity: expected one of {', '.join(options)}, got {quantity!r}")
 
 
-def field(ds: xr.Dataset, quantity: str = "abs", ax: Any = None, colorbar: bool = True, limit: float | None = None) -> Any:
+def field(
+    ds: xr.Dataset, quantity: str = "abs", ax: Any = None, colorbar: bool = True, limit: float | None = None
+) -> Any:
     """Map of a field on (z, x), with the slab's faces as dashed lines.
 
     Parameters
@@ -64,12 +66,18 @@ def field(ds: xr.Dataset, quantity: str = "abs", ax: Any = None, colorbar: bool 
     _chosen(quantity, ("abs", "real"))
     p = ds["p"].squeeze(drop=True)
     if set(p.dims) != {"z", "x"}:
-        raise ValueError(f"ds: expected a field on (z, x); select one of {', '.join(set(map(str, p.dims)) - {'z', 'x'})}")
+        raise ValueError(
+            f"ds: expected a field on (z, x); select one of {', '.join(set(map(str, p.dims)) - {'z', 'x'})}"
+        )
     p = p.transpose("x", "z")
     ax = _axes(ax, (7.1, 4.2))
     values = np.abs(p.values) if quantity == "abs" else p.values.real
     top = limit or float(np.percentile(np.abs(p.values), 99.8)) or 1.0
-    scale = {"cmap": "inferno", "vmin": 0, "vmax": top} if quantity == "abs" else {"cmap": "RdBu_r", "vmin": -top, "vmax": top}
+    scale = (
+        {"cmap": "inferno", "vmin": 0, "vmax": top}
+        if quantity == "abs"
+        else {"cmap": "RdBu_r", "vmin": -top, "vmax": top}
+    )
     mesh = ax.pcolormesh(p["z"].values, p["x"].values, values, shading="nearest", rasterized=True, **scale)
     edge = "white" if quantity == "abs" else "black"
     for face in (0.0, ds.attrs.get("slab_thickness")):
@@ -107,12 +115,15 @@ def _lines(ds: xr.Dataset, y: xr.DataArray, along: str, ax: Any, label: str | No
         return
     for i, row in enumerate(y.transpose(*others, along).values.reshape(-1, y.sizes[along])):
         values = np.unravel_index(i, [y.sizes[d] for d in others])
-        text = ", ".join(f"{d} {ds[d].values[j]:g} {ds[d].attrs.get('units', '')}" for d, j in zip(others, values, strict=True))
+        text = ", ".join(
+            f"{d} {ds[d].values[j]:g} {ds[d].attrs.get('units', '')}" for d, j in zip(others, values, strict=True)
+        )
         ax.plot(ds[along], row, label=text if label is None else f"{label}, {text}")
 
 
-def scattering(ds: xr.Dataset, quantity: str = "transmissivity", log: bool = False, ax: Any = None,
-               label: str | None = None) -> Any:
+def scattering(
+    ds: xr.Dataset, quantity: str = "transmissivity", log: bool = False, ax: Any = None, label: str | None = None
+) -> Any:
     """Curves of a plane-wave quantity against kx, kx/k0 or angle, on a linear or logarithmic scale.
 
     Parameters
@@ -141,10 +152,14 @@ def scattering(ds: xr.Dataset, quantity: str = "transmissivity", log: bool = Fal
 
 
 def _short(ds: xr.Dataset, along: str) -> str:
-    return {"kx_over_k0": "$k_x/k_0$", "kx": "$k_x$ [rad/m]", "angle": "angle [degree]"}.get(along, _title_of(ds[along]))
+    return {"kx_over_k0": "$k_x/k_0$", "kx": "$k_x$ [rad/m]", "angle": "angle [degree]"}.get(
+        along, _title_of(ds[along])
+    )
 
 
-def bloch(ds: xr.Dataset, ax: Any = None, label: str | None = None, imaginary: bool = True, mirror: bool = False) -> Any:
+def bloch(
+    ds: xr.Dataset, ax: Any = None, label: str | None = None, imaginary: bool = True, mirror: bool = False
+) -> Any:
     """Equifrequency contour: Re kz/k0 (and Im, thinner and dotted) against kx/k0.
 
     Parameters
@@ -193,8 +208,11 @@ def width(ds: xr.Dataset, ax: Any = None, label: str | None = None) -> Any:
     if along is None:
         raise ValueError("ds: expected widths along frequency or angle, got scalars")
     ax = _axes(ax, (5.2, 3.6))
-    names = {"fwhm_in": ("incident, near face", "-"), "fwhm_out": ("behind the slab", "o"),
-             "fwhm_air": ("without the slab", "--")}
+    names = {
+        "fwhm_in": ("incident, near face", "-"),
+        "fwhm_out": ("behind the slab", "o"),
+        "fwhm_air": ("without the slab", "--"),
+    }
     for name, (text, style) in names.items():
         y = ds[name] * 100
         y = y.transpose(along, ...)

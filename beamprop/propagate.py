@@ -51,11 +51,20 @@ def scenes(slab: Slab, f: np.ndarray) -> Scene:
         k = fluid.wavenumber(f).real
         bad = (k < 0) | ((k == 0) | np.isinf(k) if name == "before" else False)
         if np.any(bad):
-            raise ValueError(f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}")
+            raise ValueError(
+                f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}"
+            )
         if np.all((k > 0) & np.isfinite(k)):
             branches.append(k)
-    return Scene(slab_values(slab, f), slab.before.at(f), slab.after.at(f), 2 * np.pi * f[:, None], slab.thickness,
-                 slab.before.wavenumber(f).real, tuple(branches))
+    return Scene(
+        slab_values(slab, f),
+        slab.before.at(f),
+        slab.after.at(f),
+        2 * np.pi * f[:, None],
+        slab.thickness,
+        slab.before.wavenumber(f).real,
+        tuple(branches),
+    )
 
 
 def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
@@ -85,6 +94,7 @@ def through(s: Scene, z0: float) -> Transfer:
 
 def free(s: Scene) -> Transfer:
     """The transfer through the medium in front alone, over the distance z."""
+
     def transfer(kx: np.ndarray, z: np.ndarray) -> np.ndarray:
         kz = outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before))
         return np.exp(1j * np.multiply.outer(z, kz))
@@ -112,7 +122,9 @@ def _reach(s: Scene, beams: list[Beam], x: np.ndarray, z: np.ndarray, rtol: floa
     return Reach(s.k0, min(s.branches), band, max(extent, source), source, path)
 
 
-def _check_points(x: np.ndarray, z: np.ndarray, beam: Beam, source: float, thickness: float) -> tuple[np.ndarray, np.ndarray]:
+def _check_points(
+    x: np.ndarray, z: np.ndarray, beam: Beam, source: float, thickness: float
+) -> tuple[np.ndarray, np.ndarray]:
     """A few planes and positions that stand for all: the ends, the faces, some between, and the beam's own reach."""
     zs = np.sort(z)
     pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
@@ -166,8 +178,9 @@ def choose_line(s: Scene, beams: list[Beam], transfer: Transfer, x: np.ndarray, 
     return best
 
 
-def _difference(s: Scene, beams: list[Beam], transfer: Transfer, one: Line, two: Line,
-                x: np.ndarray, z: np.ndarray) -> np.ndarray:
+def _difference(
+    s: Scene, beams: list[Beam], transfer: Transfer, one: Line, two: Line, x: np.ndarray, z: np.ndarray
+) -> np.ndarray:
     """Largest difference between the fields on two lines, over the largest |p| of each plane, by beam."""
     h1, h2 = (transfer(line.k, z) for line in (one, two))
     errors = []
@@ -206,4 +219,3 @@ def periodic_solution(s: Scene, beams: list[Beam], x: np.ndarray, period: float)
     n = round(period / dx) if dx else 0
     fits = n and abs(n * dx - period) < 1e-12 * period and spectral.fast_length(n) == n
     return Solution(line, np.zeros(len(beams)), n if fits and n >= x.size else 0)
-

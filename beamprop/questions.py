@@ -14,7 +14,6 @@ from .beam import Beam, sin_degrees
 from .conventions import outgoing_kz
 from .media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
 
-
 #: Wraps the items of a loop, to watch it.
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
@@ -145,8 +144,12 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     energy, absorption = _energies(res.r, res.t, k, omega, before, after)
     dims, pick = _dims(frequency=f, **{name: axis})
     variables = {
-        "r": res.r, "t": res.t, "transmissivity": np.abs(res.t) ** 2, "reflectivity": np.abs(res.r) ** 2,
-        "energy_transmission": energy, "absorption": absorption,
+        "r": res.r,
+        "t": res.t,
+        "transmissivity": np.abs(res.t) ** 2,
+        "reflectivity": np.abs(res.r) ** 2,
+        "energy_transmission": energy,
+        "absorption": absorption,
     }
     coords = _coords(frequency=f, **{name: axis})
     coords |= _other_coords(slab, name, k, flat, dims, pick)
@@ -211,14 +214,17 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
         raise ValueError(f"{name}: expected real values, got complex ones")
     layers = layer_values(cell, flat)
     if np.any(layers.vanishing) and np.any(k != 0):
-        raise ValueError("cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit")
+        raise ValueError(
+            "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"
+        )
     kz = response.bloch_wavenumber(layers, 2 * np.pi * flat[:, None], k.astype(complex))
     k0 = _forward_k0(background, flat, "background")
     dims, pick = _dims(frequency=f, **{name: axis})
     variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
     coords = _coords(frequency=f, **{name: axis})
-    return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "bloch", flat,
-                         cell=cell, background=background)
+    return datasets.make(
+        {n: (dims, v[pick]) for n, v in variables.items()}, coords, "bloch", flat, cell=cell, background=background
+    )
 
 
 # --- beams ------------------------------------------------------------------------------------------------
@@ -299,16 +305,25 @@ def field(
     variables: dict[str, Any] = {"p": (dims, p[pick])}
     if boundary == "open":
         variables["error_estimate"] = (few, errors[pick[:2]])
-    ds = datasets.make(variables, _coords(**axes), "field", flat, slab=slab, beam=beam, boundary=boundary,
-                       period=period, rtol=rtol)
+    ds = datasets.make(
+        variables, _coords(**axes), "field", flat, slab=slab, beam=beam, boundary=boundary, period=period, rtol=rtol
+    )
     ds.attrs |= {"boundary": boundary, "slab_thickness": slab.thickness}
     if period is not None:
         ds.attrs["period"] = period
     return ds
 
 
-def _field_at(s: propagate.Scene, beams: list[Beam], x: np.ndarray, z: np.ndarray, period: float | None, rtol: float,
-              out: np.ndarray, errors: np.ndarray) -> None:
+def _field_at(
+    s: propagate.Scene,
+    beams: list[Beam],
+    x: np.ndarray,
+    z: np.ndarray,
+    period: float | None,
+    rtol: float,
+    out: np.ndarray,
+    errors: np.ndarray,
+) -> None:
     """Fill out (angle, z, x) and errors (angle) at one frequency, in blocks of planes of bounded memory."""
     transfer = propagate.through(s, beams[0].z0)
     if period is None:
@@ -346,11 +361,16 @@ def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.nd
 def _announce(p: np.ndarray, errors: np.ndarray, rtol: float) -> None:
     """Nothing that is not finite leaves, and nothing above rtol leaves without a word."""
     if not np.all(np.isfinite(p)):
-        raise ValueError("the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow")
+        raise ValueError(
+            "the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow"
+        )
     worst = np.max(errors, initial=0.0, where=np.isfinite(errors))
     if worst > rtol:
-        warnings.warn(f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
-                      AccuracyWarning, stacklevel=3)
+        warnings.warn(
+            f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
+            AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def beam_width(
@@ -395,7 +415,11 @@ def beam_width(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
-    work = [(rows, j) for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128)) for j in range(flat_angles.size)]
+    work = [
+        (rows, j)
+        for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
+        for j in range(flat_angles.size)
+    ]
     for rows, j in progress(work):
         s = propagate.scenes(slab, flat[rows])
         found = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
@@ -405,8 +429,16 @@ def beam_width(
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
     dims, pick = _dims(frequency=f, angle=angles)
-    return datasets.make({n: (dims, v[pick]) for n, v in table.items()}, _coords(frequency=f, angle=angles), "beam_width",
-                         flat, slab=slab, beam=beam, rtol=rtol, air_distance=air_distance)
+    return datasets.make(
+        {n: (dims, v[pick]) for n, v in table.items()},
+        _coords(frequency=f, angle=angles),
+        "beam_width",
+        flat,
+        slab=slab,
+        beam=beam,
+        rtol=rtol,
+        air_distance=air_distance,
+    )
 
 
 def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> xr.DataArray:

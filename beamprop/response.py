@@ -53,7 +53,7 @@ class State(NamedTuple):
 
     p: np.ndarray
     q: np.ndarray
-    log: np.ndarray | complex
+    log: np.ndarray
 
 
 class BlochPhase(NamedTuple):
@@ -232,7 +232,9 @@ class _Station(NamedTuple):
     start: float
 
 
-def _march(segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State) -> tuple[State, list[_Station]]:
+def _march(
+    segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State
+) -> tuple[State, list[_Station]]:
     """Carry the outgoing state back through all segments."""
     starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
     omega2, kx2 = omega * omega, kx * kx
@@ -302,8 +304,17 @@ def _has_vanishing_layer(segments: list[SegmentValues]) -> np.ndarray:
     return np.any([np.any(s.layers.vanishing, axis=0) for s in segments], axis=0)[:, None]
 
 
-def _grazing(near: State, grazing: np.ndarray, forward: np.ndarray, backward: np.ndarray, size: np.ndarray,
-             front: FluidValues, behind: FluidValues, segments: list[SegmentValues], omega: np.ndarray) -> tuple:
+def _grazing(
+    near: State,
+    grazing: np.ndarray,
+    forward: np.ndarray,
+    backward: np.ndarray,
+    size: np.ndarray,
+    front: FluidValues,
+    behind: FluidValues,
+    segments: list[SegmentValues],
+    omega: np.ndarray,
+) -> tuple:
     """r and t at kz_before = 0 exactly, where both may be 0/0.
 
     In general q at the near face is not zero and r = -1, t = 0 come out by themselves. Where q vanishes with kz (no
@@ -315,12 +326,21 @@ def _grazing(near: State, grazing: np.ndarray, forward: np.ndarray, backward: np
     zero = grazing & equal & (np.abs(near.q) <= 1e-12 * rounding * np.abs(near.p))
     with np.errstate(over="ignore"):
         inverse = np.where(zero, np.exp(-2 * near.log) / np.where(near.p == 0, 1.0, near.p), 0)
-    return (np.where(zero, near.p + inverse, forward), np.where(zero, near.p - inverse, backward),
-            np.where(zero, 2.0, size))
+    return (
+        np.where(zero, near.p + inverse, forward),
+        np.where(zero, near.p - inverse, backward),
+        np.where(zero, 2.0, size),
+    )
 
 
-def _inside(stations: list[_Station], omega: np.ndarray, kx: np.ndarray, z: np.ndarray,
-            near_log: np.ndarray | complex, per_incident: np.ndarray) -> np.ndarray:
+def _inside(
+    stations: list[_Station],
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+) -> np.ndarray:
     """p at depths z inside the slab per unit incident pressure, (F, Z, n)."""
     out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
     starts = np.array([s.start for s in stations])
@@ -332,8 +352,16 @@ def _inside(stations: list[_Station], omega: np.ndarray, kx: np.ndarray, z: np.n
     return out
 
 
-def _inside_segment(station: _Station, omega: np.ndarray, kx: np.ndarray, depth: np.ndarray, rows: np.ndarray,
-                    near_log: np.ndarray | complex, per_incident: np.ndarray, out: np.ndarray) -> None:
+def _inside_segment(
+    station: _Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    depth: np.ndarray,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
     """Fill rows of `out` that lie `depth` behind the segment's near face.
 
     A depth lies in layer j of some period: whole periods behind it in closed form, then the layers behind j, then the rest
@@ -357,16 +385,17 @@ def _inside_segment(station: _Station, omega: np.ndarray, kx: np.ndarray, depth:
             part = share[here][:, None]
             for i in range(kx.shape[0]):
                 one = State(*(np.broadcast_to(s[:, i], (here.size, kx.shape[1])) for s in state))
-                A, B, f = _layer(_one_frequency(layers, i), j, omega2[i:i + 1], kx2[i:i + 1], part)
+                A, B, f = _layer(_one_frequency(layers, i), j, omega2[i : i + 1], kx2[i : i + 1], part)
                 p, _, log = _layer_back(one, A, B, f)
-                out[i, rows[here]] = p * np.exp(log - np.broadcast_to(near_log, kx.shape)[i]) * per_incident[i]
+                out[i, rows[here]] = p * np.exp(log - near_log[i]) * per_incident[i]
         A, B, f = _layer(layers, j, omega2, kx2)
         tail = _times_in_front(tail, A, B, f)
 
 
 def _one_frequency(layers: LayerValues, i: int) -> LayerValues:
-    mass, compliance, mobility, vanishing = (v[:, i:i + 1] for v in (layers.mass, layers.compliance, layers.mobility,
-                                                                     layers.vanishing))
+    mass, compliance, mobility, vanishing = (
+        v[:, i : i + 1] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
+    )
     return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
 
 
@@ -404,7 +433,9 @@ def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> 
     """kz of the Bloch wave that decays, or where none does carries energy, along +z; continuous along kx. (F, n)."""
     m = cell_matrix(layers, omega, kx)
     phase = bloch_phase(m).phase
-    ratio = (np.exp(1j * phase - (0.0 if m.growth is None else m.growth)) - m.a - m.e11) / np.where(m.e12 == 0, 1, m.e12)
+    ratio = (np.exp(1j * phase - (0.0 if m.growth is None else m.growth)) - m.a - m.e11) / np.where(
+        m.e12 == 0, 1, m.e12
+    )
     neither = np.abs(phase.imag) <= 1e-11 * (1 + np.abs(phase))
     phase = np.where(neither, phase.real + 0j, phase)  # rounding decides nothing
     phase = np.where(neither & ((ratio / 1j).real < 0), -phase, phase)

@@ -41,6 +41,7 @@ class Measures(NamedTuple):
 
 def far_face(s: Scene, z0: float) -> Plane:
     """Transfer from the launch plane z0 to the far face."""
+
     def plane(kx: np.ndarray) -> np.ndarray:
         kz = outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before))
         return solve(s.segments, s.before, s.after, s.omega, kx).t * np.exp(-1j * kz * z0)
@@ -50,6 +51,7 @@ def far_face(s: Scene, z0: float) -> Plane:
 
 def without(s: Scene, distance: np.ndarray) -> Plane:
     """Transfer over distances (F,) in the medium in front."""
+
     def plane(kx: np.ndarray) -> np.ndarray:
         return np.exp(1j * outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before)) * distance[:, None])
 
@@ -61,7 +63,7 @@ def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]
 
     A plane wave of amplitude h lands at -d(arg h)/dkx; the beam's strong plane waves span the window.
     """
-    lo, hi = beam.band(s.k0, 0.3)  # type: ignore[arg-type]
+    lo, hi = beam.band(s.k0, 0.3)
     k0 = s.k0[:, None]
     k = np.clip(np.linspace(lo, hi, 41, axis=-1), -0.98 * k0, 0.98 * k0)
     small = 1e-4 * k0
@@ -98,15 +100,16 @@ def _modes(s: Scene, beam: Beam, plane: Plane, line: Line) -> Modes:
 
 
 def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
-    lo, hi = beam.band(s.k0, rtol * 1e-2)  # type: ignore[arg-type]
+    lo, hi = beam.band(s.k0, rtol * 1e-2)
     source = beam.reach(rtol * 1e-2)
     extent = np.abs(middle - beam.centre) + half
     branch = np.min(np.stack(s.branches), axis=0)
     return spectral.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
 
 
-def measure(s: Scene, slow: Callable[[int], tuple[Scene, Transfer, float]], beam: Beam, plane: Plane, path: Any,
-            rtol: float) -> Measures:
+def measure(
+    s: Scene, slow: Callable[[int], tuple[Scene, Transfer, float]], beam: Beam, plane: Plane, path: Any, rtol: float
+) -> Measures:
     """Width, peak and centroid of the profiles across one plane per frequency.
 
     `path` is the length along z (F,); `slow(i)` gives what the slow path needs for frequency i.
@@ -144,8 +147,9 @@ def _sampled(modes: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
     return x, right * grow + left / grow
 
 
-def _measured(modes: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float,
-              rtol: float) -> tuple[Measures, np.ndarray]:
+def _measured(
+    modes: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float, rtol: float
+) -> tuple[Measures, np.ndarray]:
     """Measures from the samples and Newton's method, and where they can be trusted."""
     x, p = _sampled(modes, plan)
     valid = np.abs(x - middle[:, None]) <= half[:, None]
@@ -165,8 +169,13 @@ def _measured(modes: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, h
     good &= (left >= 0) & (right < index.size)
     left, right = np.where(good, left, 0), np.where(good, right, index.size - 1)
     outer = np.stack([x[rows, left], x[rows, right]], axis=-1)
-    inner = np.stack([np.minimum(x[rows, np.minimum(left + 1, index.size - 1)], position),
-                      np.maximum(x[rows, np.maximum(right - 1, 0)], position)], axis=-1)
+    inner = np.stack(
+        [
+            np.minimum(x[rows, np.minimum(left + 1, index.size - 1)], position),
+            np.maximum(x[rows, np.maximum(right - 1, 0)], position),
+        ],
+        axis=-1,
+    )
     edges = _newton_level(modes, inner, outer, level * peak)
     check = np.concatenate([edges, position[:, None]], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -183,7 +192,7 @@ def _newton_peak(modes: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     for _ in range(5):
         p, slope, bend = (v[:, 0] for v in modes.at(x[:, None]))
         first = (p.conj() * slope).real
-        curve = (np.abs(slope) ** 2 + (p.conj() * bend).real)
+        curve = np.abs(slope) ** 2 + (p.conj() * bend).real
         step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
         x = np.clip(x + step, start - dx, start + dx)
     return x
@@ -249,28 +258,46 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
     wavelengths = 2 * np.pi / s.k0
 
     def one(i: int) -> Scene:
-        return Scene([seg._replace(layers=seg.layers._replace(**_at(seg.layers, i))) for seg in s.segments],
-                     type(s.before)(*(v[i:i + 1] for v in s.before)), type(s.after)(*(v[i:i + 1] for v in s.after)),
-                     s.omega[i:i + 1], s.thickness, float(s.k0[i]), tuple(float(b[i]) for b in s.branches))
+        return Scene(
+            [seg._replace(layers=seg.layers._replace(**_at(seg.layers, i))) for seg in s.segments],
+            type(s.before)(*(v[i : i + 1] for v in s.before)),
+            type(s.after)(*(v[i : i + 1] for v in s.after)),
+            s.omega[i : i + 1],
+            s.thickness,
+            float(s.k0[i]),
+            tuple(float(b[i]) for b in s.branches),
+        )
 
     def free(distance: np.ndarray) -> np.ndarray:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
-        return measure(alone, lambda i: (s1 := one(i)._replace(branches=(float(s.k0[i]),)), propagate.free(s1),
-                                         float(distance[i])), beam, without(s, distance), distance, rtol).width
+        return measure(
+            alone,
+            lambda i: (s1 := one(i)._replace(branches=(float(s.k0[i]),)), propagate.free(s1), float(distance[i])),
+            beam,
+            without(s, distance),
+            distance,
+            rtol,
+        ).width
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
-    far = measure(s, lambda i: (s1 := one(i), propagate.through(s1, beam.z0), s.thickness), beam, far_face(s, beam.z0),
-                  s.thickness - beam.z0, rtol)
+    far = measure(
+        s,
+        lambda i: (s1 := one(i), propagate.through(s1, beam.z0), s.thickness),
+        beam,
+        far_face(s, beam.z0),
+        s.thickness - beam.z0,
+        rtol,
+    )
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
     return Row(launch, near, far.width, air, far.peak, far.centroid)
 
 
 def _at(layers: Any, i: int) -> dict[str, np.ndarray]:
     """Frequency i of a cell's values."""
-    return {n: getattr(layers, n)[:, i:i + 1] for n in ("mass", "compliance", "mobility", "vanishing")}
+    return {n: getattr(layers, n)[:, i : i + 1] for n in ("mass", "compliance", "mobility", "vanishing")}
 
 
 def _launch_widths(s: Scene, beam: Beam) -> np.ndarray:

@@ -25,6 +25,7 @@ length of the path along z and kb the smallest |kx| of a branch point:
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -127,7 +128,7 @@ def propagating_line(k0: float, breaks: list[float], count: int) -> Line:
     w = np.tile(v / 2 / panels, panels)
     smooth, slope = u * u * (3 - 2 * u), 6 * u * (1 - u)
     nodes, weights = [], []
-    for lo, hi in zip(edges[:-1], edges[1:], strict=True):
+    for lo, hi in itertools.pairwise(edges):
         alpha = lo + (hi - lo) * smooth
         nodes.append(k0 * np.sin(alpha))
         weights.append(k0 * np.cos(alpha) * (hi - lo) * slope * w / (2 * np.pi))
@@ -224,7 +225,7 @@ def fft_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: n
             _fold(h[block] * amplitude, bins, n, buffer[:size])
             buffer[size:] = 0
             transform()
-            part = buffer[:size, :x.size] * envelope
+            part = buffer[:size, : x.size] * envelope
             if number:
                 out[block] += part
             else:

@@ -70,8 +70,9 @@ def _peak(x: np.ndarray, size: np.ndarray, top: int, evaluate: Evaluate) -> tupl
     return float(fine[best]), float(values[best])
 
 
-def _crossing(x: np.ndarray, size: np.ndarray, top: int, step: int, target: float, position: float,
-              evaluate: Evaluate) -> float | None:
+def _crossing(
+    x: np.ndarray, size: np.ndarray, top: int, step: int, target: float, position: float, evaluate: Evaluate
+) -> float | None:
     """Where |p| first falls to the target beyond the peak, in one direction."""
     side = np.arange(top, x.size if step > 0 else -1, step)
     below = np.flatnonzero(size[side] < target)

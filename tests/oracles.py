@@ -135,7 +135,7 @@ def open_field(layers, periods, before, after, frequency, spectrum, z0, x, z, be
         else:
             inside = min(depth, total)
             n = min(int(inside // period), periods)
-            state = (np.linalg.matrix_power(cell, n) @ near[..., None])
+            state = np.linalg.matrix_power(cell, n) @ near[..., None]
             left = inside - n * period
             for rho, K, d in layers if n < periods else []:
                 part = min(d, left)

@@ -11,7 +11,12 @@ import beamprop as bp
 
 K0 = 2 * np.pi * 2500 / 343
 AIR = (bp.AIR.density, bp.AIR.bulk_modulus)
-FLUIDS = [bp.AIR, bp.Fluid.from_speed(1000.0, 1480.0), bp.Fluid.from_speed(0.18, 972.0), bp.Fluid(1.9 + 0.2j, 9e4 - 2e3j)]
+FLUIDS = [
+    bp.AIR,
+    bp.Fluid.from_speed(1000.0, 1480.0),
+    bp.Fluid.from_speed(0.18, 972.0),
+    bp.Fluid(1.9 + 0.2j, 9e4 - 2e3j),
+]
 
 
 def layers_of(cell):
@@ -20,23 +25,29 @@ def layers_of(cell):
 
 def nudged(layers):
     """The same cell after a change of the last bit of every number, up and down in turn."""
+
     def bump(value, way):
         return complex(np.nextafter(value.real, way * np.inf), value.imag)
-    return [(bump(rho, 1 - 2 * (j % 2)), bump(K, -1 + 2 * (j % 2)), float(np.nextafter(d, 0)))
-            for j, (rho, K, d) in enumerate(layers)]
+
+    return [
+        (bump(rho, 1 - 2 * (j % 2)), bump(K, -1 + 2 * (j % 2)), float(np.nextafter(d, 0)))
+        for j, (rho, K, d) in enumerate(layers)
+    ]
 
 
-slabs = st.fixed_dictionaries({
-    "n_layers": st.integers(1, 16),
-    "eta": st.floats(1 / 100, 1 / 20),
-    "loss": st.one_of(st.just(0.0), st.floats(0, 0.5)),
-    "rho_m": st.floats(-0.5, 2.0),
-    "periods": st.integers(1, 5000),
-    "ratio": st.one_of(st.floats(0, 1), st.floats(1, 10)),
-    "frequency": st.floats(1500, 4000),
-    "before": st.integers(0, 2),
-    "after": st.integers(0, 3),
-})
+slabs = st.fixed_dictionaries(
+    {
+        "n_layers": st.integers(1, 16),
+        "eta": st.floats(1 / 100, 1 / 20),
+        "loss": st.one_of(st.just(0.0), st.floats(0, 0.5)),
+        "rho_m": st.floats(-0.5, 2.0),
+        "periods": st.integers(1, 5000),
+        "ratio": st.one_of(st.floats(0, 1), st.floats(1, 10)),
+        "frequency": st.floats(1500, 4000),
+        "before": st.integers(0, 2),
+        "after": st.integers(0, 3),
+    }
+)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -52,8 +63,9 @@ def test_r_and_t_against_fifty_digits(case):
     ends = [(v.density, v.bulk_modulus) for v in (before, after)]
     r, t = oracles.slab_response(layers_of(cell), case["periods"], *ends, f, kx)
     others = [oracles.slab_response(nudged(layers_of(cell)), case["periods"], *ends, f, kx)]
-    others += [oracles.slab_response(layers_of(cell), case["periods"], *ends, f, np.nextafter(kx, way))
-               for way in (0, np.inf)]
+    others += [
+        oracles.slab_response(layers_of(cell), case["periods"], *ends, f, np.nextafter(kx, way)) for way in (0, np.inf)
+    ]
     for i, (got, want) in enumerate(((ds.r.item(), r), (ds.t.item(), t))):
         if abs(want) > 1e-250:
             allowed = max(1e-9, *(100 * float(abs((other[i] - want) / want)) for other in others))
@@ -80,8 +92,10 @@ def test_effective_density_of_the_staircase_is_equation_9():
     n = np.arange(1, 20001)
     for layers in (6, 10, 14):
         steps = np.cos(2 * np.pi * np.arange(layers) / layers)
-        b = sum(c * (np.exp(-2j * np.pi * n * (j + 1) / layers) - np.exp(-2j * np.pi * n * j / layers))
-                for j, c in enumerate(steps)) / (-2j * np.pi * n)
+        b = sum(
+            c * (np.exp(-2j * np.pi * n * (j + 1) / layers) - np.exp(-2j * np.pi * n * j / layers))
+            for j, c in enumerate(steps)
+        ) / (-2j * np.pi * n)
         S = 2 * np.sum(np.abs(b) ** 2 / n**2)
         rho = complex(bp.lmmd_emt(bp.lmmd_cell(0.05, 0.0, layers)).at(2500.0).rho_z) / 1.25
         assert rho == pytest.approx(0.05 + S, abs=1e-9)
@@ -103,8 +117,9 @@ def test_open_fields_against_a_bent_contour(lossless, angle):
     z = np.array([-0.1, -0.03, 0.0, 0.00031, 0.2571, 0.9, slab.thickness, 1.2])
     got = bp.field(slab, bp.GaussianBeam(0.096, angle, z0=-0.1), 2500.0, X, z, rtol=1e-10)
     want = oracles.open_field(layers_of(cell), 450, AIR, AIR, 2500.0, gaussian(0.096, angle, K0), -0.1, X, z)
-    again = oracles.open_field(layers_of(cell), 450, AIR, AIR, 2500.0, gaussian(0.096, angle, K0), -0.1, X, z,
-                               bend=4.0, count=7001)
+    again = oracles.open_field(
+        layers_of(cell), 450, AIR, AIR, 2500.0, gaussian(0.096, angle, K0), -0.1, X, z, bend=4.0, count=7001
+    )
     assert np.abs(again - want).max() < 1e-10  # the witness agrees with itself on another contour
     largest = np.abs(want).max(axis=1, keepdims=True)
     assert np.max(np.abs(got.p.values - want) / largest) < 1e-8
@@ -120,8 +135,20 @@ def test_water_behind_and_another_medium():
     f = 2200.0
     k0 = 2 * np.pi * f / 343
     shifted = gaussian(0.05, 20.0, k0)
-    want = oracles.open_field(layers_of(cell), 60, AIR, (1000.0, 1000.0 * 1480.0**2), f,
-                              lambda k: shifted(k) * np.exp(-1j * k * 0.1), -0.05, x, z, bend=2.0, band=420.0, count=12001)
+    want = oracles.open_field(
+        layers_of(cell),
+        60,
+        AIR,
+        (1000.0, 1000.0 * 1480.0**2),
+        f,
+        lambda k: shifted(k) * np.exp(-1j * k * 0.1),
+        -0.05,
+        x,
+        z,
+        bend=2.0,
+        band=420.0,
+        count=12001,
+    )
     got = bp.field(slab, bp.GaussianBeam(0.05, 20.0, x0=0.1, z0=-0.05), f, x, z, rtol=1e-9)
     assert np.max(np.abs(got.p.values - want) / np.abs(want).max(axis=1, keepdims=True)) < 1e-8
 
@@ -154,8 +181,9 @@ def test_widths_against_bisection_on_the_oracle(lossless, frequency):
     k0 = 2 * np.pi * frequency / 343
 
     def on_axis(x):
-        return oracles.open_field(layers_of(cell), 450, AIR, AIR, frequency, gaussian(0.096, 0, k0), 0.0, [x],
-                                  [slab.thickness], count=3001)[0, 0]
+        return oracles.open_field(
+            layers_of(cell), 450, AIR, AIR, frequency, gaussian(0.096, 0, k0), 0.0, [x], [slab.thickness], count=3001
+        )[0, 0]
 
     ds = bp.beam_width(slab, bp.GaussianBeam(0.096), frequency, rtol=1e-9)
     air = half_width(lambda x: oracles.air_beam(gaussian(0.096, 0, k0), k0, [x], [2 * 343 / frequency])[0, 0], 0.5)

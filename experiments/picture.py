@@ -1,0 +1,38 @@
+"""The picture on the README's first screen: one oblique beam in air and through the paper's lossless slab."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from common import DESIGN, FWHM, LOSSLESS, run, slab
+
+import beamprop as bp
+
+
+def compute(quick: bool = False) -> dict[str, xr.Dataset]:
+    """|p| at 45 degrees, with and without the slab."""
+    n = 151 if quick else 451
+    exact = slab(450, LOSSLESS)
+    x = np.linspace(-0.45, 0.75, n)
+    # on the cells' faces: inside a cell the pressure ripples by about its own mean
+    z = exact.cell.thickness * np.arange(-43, 525, 4 if quick else 1)
+    beam = bp.GaussianBeam(FWHM, angle=45, z0=z[0])
+    return {
+        "air": bp.field(bp.Slab.uniform(bp.AIR, exact.thickness), beam, DESIGN, x, z),
+        "slab": bp.field(exact, beam, DESIGN, x, z),
+    }
+
+
+def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
+    """Two maps on one scale."""
+    fig, axes = plt.subplots(1, 2, figsize=(8.6, 3.6), sharey=True, layout="compressed")
+    for ax, (name, title) in zip(axes, {"air": "air", "slab": "4500 layers"}.items(), strict=True):
+        bp.plot.field(data[name], ax=ax, colorbar=name == "slab", limit=0.9)
+        ax.set_title(f"{title}, 45°, 2500 Hz", fontsize="medium")
+    axes[1].set_ylabel("")
+    return fig
+
+
+if __name__ == "__main__":
+    run("beam", __doc__, compute, plot, lambda data: [])
