@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any
 from ._version import __version__
 
 if TYPE_CHECKING:
-    from . import plot
+    from . import fem, plot
     from .beam import GaussianBeam, Profile, Slits
+    from .comparison import compare
+    from .comsol import read_comsol, to_grid
     from .datasets import provenance
     from .homogenize import lmmd_emt, lmmd_emt_slab, standard_emt
     from .media import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
@@ -28,11 +30,13 @@ _HOMES = {
     "homogenize": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
     "beam": ("GaussianBeam", "Profile", "Slits"),
     "questions": ("AccuracyWarning", "beam_width", "bloch", "field", "fwhm", "scattering"),
+    "comparison": ("compare",),
+    "comsol": ("read_comsol", "to_grid"),
     "datasets": ("provenance",),
     "storage": ("load", "save"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
-_MODULES = ("plot",)
+_MODULES = ("fem", "plot")
 
 __all__ = [
     "AIR",
@@ -48,6 +52,8 @@ __all__ = [
     "__version__",
     "beam_width",
     "bloch",
+    "compare",
+    "fem",
     "field",
     "fwhm",
     "lmmd_cell",
@@ -56,9 +62,11 @@ __all__ = [
     "load",
     "plot",
     "provenance",
+    "read_comsol",
     "save",
     "scattering",
     "standard_emt",
+    "to_grid",
 ]
 
 

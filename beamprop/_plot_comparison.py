@@ -64,7 +64,7 @@ def _figure(ds: xr.Dataset, maps: bool) -> Sequence[Any]:
     figure = plt.figure(figsize=(_WIDTH, height + 3.2), layout="constrained")
     grid = figure.add_gridspec(2, 6, height_ratios=[height + 0.6, 2.2])
     first = figure.add_subplot(grid[0, :2])
-    others = [figure.add_subplot(grid[0, k:k + 2], sharex=first, sharey=first) for k in (2, 4)]
+    others = [figure.add_subplot(grid[0, k : k + 2], sharex=first, sharey=first) for k in (2, 4)]
     return [first, *others, figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:])]
 
 
@@ -82,8 +82,16 @@ def _maps(ds: xr.Dataset, axes: Sequence[Any]) -> None:
     aspect = "equal" if 0.4 < _proportion(ds) < 2.5 else "auto"
     for ax, size, limit, title in zip(axes, sizes, limits, ("|a|", "|b|", "|a − b|"), strict=True):
         factor, scaled = _scaled_unit(limit, unit)
-        mesh = ax.pcolormesh(ds.z.values, ds.x.values, size * factor, shading="nearest", cmap="inferno", vmin=0,
-                             vmax=limit * factor, rasterized=True)
+        mesh = ax.pcolormesh(
+            ds.z.values,
+            ds.x.values,
+            size * factor,
+            shading="nearest",
+            cmap="inferno",
+            vmin=0,
+            vmax=limit * factor,
+            rasterized=True,
+        )
         ax.set(xlabel="z [m]", aspect=aspect)
         bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([0, 1.04, 1, 0.05]), orientation="horizontal")
         bar.ax.xaxis.set_ticks_position("top")

@@ -7,64 +7,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from . import spectral
+from . import modes, spectral
 from .beam import Beam
 from .conventions import outgoing_kz
-from .media import FluidValues, SegmentValues, Slab, slab_values
 from .response import solve
+from .scene import Scene
 from .spectral import Line, Reach
 
-#: How often a line is tightened before the asked rtol is given up, and the most modes that a line may have.
-LEVELS = (1.0, 1.3, 1.7, 2.2, 3.0)
-MOST_MODES = 400_000
+#: The most modes that a line may have, and how often a plan is widened before the asked rtol is given up.
+MOST_MODES = 200_000
+ATTEMPTS = 14
 
 #: h(kx, z): what a plane wave of the source's spectrum has become at z; (Z, n).
 Transfer = Callable[[np.ndarray, np.ndarray], np.ndarray]
-
-
-class Scene(NamedTuple):
-    """One slab at F frequencies, as arrays; most functions here take F = 1."""
-
-    segments: list[SegmentValues]
-    before: FluidValues
-    after: FluidValues
-    omega: np.ndarray  # (F, 1)
-    thickness: float
-    k0: Any  # float for one frequency, (F,) for several
-    branches: tuple[Any, ...]  # |kx| of the branch points, shaped like k0
-
-
-def scene(slab: Slab, frequency: float) -> Scene:
-    """Evaluate a slab at one frequency; refuse half-spaces in which the question has no answer."""
-    s = scenes(slab, np.array([frequency]))
-    return s._replace(k0=float(s.k0[0]), branches=tuple(float(b[0]) for b in s.branches))
-
-
-def scenes(slab: Slab, f: np.ndarray) -> Scene:
-    """Evaluate a slab at frequencies (F,)."""
-    branches = []
-    for name, fluid in (("before", slab.before), ("after", slab.after)):
-        k = fluid.wavenumber(f).real
-        bad = (k < 0) | ((k == 0) | np.isinf(k) if name == "before" else False)
-        if np.any(bad):
-            raise ValueError(
-                f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}"
-            )
-        if np.all((k > 0) & np.isfinite(k)):
-            branches.append(k)
-    return Scene(
-        slab_values(slab, f),
-        slab.before.at(f),
-        slab.after.at(f),
-        2 * np.pi * f[:, None],
-        slab.thickness,
-        slab.before.wavenumber(f).real,
-        tuple(branches),
-    )
 
 
 def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
@@ -112,7 +71,7 @@ def even_spacing(x: np.ndarray) -> float:
 
 
 def _reach(s: Scene, beams: list[Beam], x: np.ndarray, z: np.ndarray, rtol: float) -> Reach:
-    tolerance = rtol * 1e-2
+    tolerance = rtol * 1e-3
     bands = [beam.band(s.k0, tolerance) for beam in beams]
     beam = beams[0]
     source = beam.reach(tolerance)
@@ -140,57 +99,146 @@ class Solution(NamedTuple):
 
     line: Line
     error: np.ndarray
-    fft: int  #: FFT length if the line fits the asked even grid, else 0
+    fft: int = 0  #: FFT length if the line fits the asked even grid, else 0
+    circles: bool = False  #: whether it has circles around backward modes
 
 
-def choose_line(s: Scene, beams: list[Beam], transfer: Transfer, x: np.ndarray, z: np.ndarray, rtol: float) -> Solution:
+class _Checks(NamedTuple):
+    """Where two lines are compared."""
+
+    beams: list[Beam]
+    transfer: Transfer
+    x: np.ndarray
+    z: np.ndarray
+    guided: bool
+
+
+def choose_line(
+    s: Scene,
+    beams: list[Beam],
+    transfer: Transfer,
+    x: np.ndarray,
+    z: np.ndarray,
+    rtol: float,
+    guided: bool = True,
+) -> Solution:
     """The cheapest line on which the field keeps rtol, judged by a second line of other parameters.
 
-    The two share no error term: sigma, delta and W all differ, so their difference at the check points is the error of the
-    coarser one.
+    The two share no error term, so their difference at the check points is the error of the coarser one. An even grid of
+    many points gets a pair of straight lines for FFTs, judged by the bent path. `guided` says whether the transfer knows
+    guided modes (none without a slab).
     """
     reach = _reach(s, beams, x, z, rtol)
     points, planes = _check_points(x, z, beams[0], reach.source, s.thickness)
-    dx = even_spacing(x)
+    checks = _Checks(beams, transfer, points, planes, guided)
+    if not all(beam.entire for beam in beams):
+        return _propagating_solution(s, checks, reach, rtol)
+    bent = _bent_solution(s, checks, reach, rtol)
+    straight = None if bent.circles else _straight_solution(s, checks, reach, rtol, bent, x)
+    return straight or bent
+
+
+def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solution:
+    """Widen the window, or the band where its edge is what is missing, until two bent paths agree."""
+    plan = spectral.plan_bent(reach, rtol, _noise(checks, reach))
+    found = modes.between(s, 1.05 * plan.depth, 1.5 * plan.band) if checks.guided else modes.NONE
     best: Solution | None = None
-    for tighten in LEVELS:
-        if all(beam.entire for beam in beams):
-            plan = spectral.plan_open(reach, rtol, tighten)
-            n = spectral.fast_length(math.ceil(plan.window / dx)) if dx else 0
-            if n and n <= max(4096, 8 * x.size):
-                plan = plan._replace(window=n * dx)
-            else:
-                n = 0
-            if plan.band * plan.window > 2 * np.pi * MOST_MODES:
-                break
-            line, second = spectral.open_line(plan), spectral.open_line(plan.other())
-        else:
-            n = 0
-            count = int((40 + 0.8 * reach.k0 * (reach.extent + reach.path)) * tighten)
-            line, second = (spectral.propagating_line(s.k0, list(s.branches), c) for c in (count, int(1.3 * count)))
-        found = Solution(line, _difference(s, beams, transfer, line, second, points, planes), n)
-        if best is None or found.error.max() < best.error.max():
-            best = found
-        if found.error.max() <= rtol:
+    for _ in range(ATTEMPTS):
+        if plan.other().band * plan.other().window > 2 * np.pi * MOST_MODES:
             break
+        line, second = (
+            modes.with_circles(spectral.bent_line(p), found, (*s.branches,), max(reach.extent, reach.source))
+            for p in (plan, plan.other())
+        )
+        error, edge = _difference(s, checks, line, second)
+        stuck = best is not None and error.max() > 0.5 * best.error.max()
+        if best is None or error.max() < best.error.max():
+            best = Solution(line, error, circles=bool(found.wrong))
+        if error.max() <= rtol:
+            break
+        if edge > 0.3 * rtol:
+            plan = plan._replace(band=plan.band * 1.5)
+        elif stuck:  # wider does not help: rounding, magnified by exp(depth X)
+            plan = plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
+        else:
+            plan = plan._replace(window=plan.window * 1.6)
     if best is None:
         raise ValueError(f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window")
     return best
 
 
-def _difference(
-    s: Scene, beams: list[Beam], transfer: Transfer, one: Line, two: Line, x: np.ndarray, z: np.ndarray
-) -> np.ndarray:
-    """Largest difference between the fields on two lines, over the largest |p| of each plane, by beam."""
-    h1, h2 = (transfer(line.k, z) for line in (one, two))
-    errors = []
-    for beam in beams:
-        a, b = (point_sum(s, beam, line, h, x) for line, h in ((one, h1), (two, h2)))
+def _noise(checks: _Checks, reach: Reach) -> float:
+    """Relative rounding of the response, seen in its change when k changes in the last bits."""
+    k = np.linspace(0.03, min(reach.band, 3 * reach.k0), 24) * (1 - 0.05j)
+    a, b = (
+        checks.transfer(np.concatenate([k, k * (1 + 4 * spectral.EPS)]), checks.z).reshape(-1, 2, k.size).swapaxes(0, 1)
+    )
+    size = np.max(np.abs(a), axis=1, keepdims=True)
+    change = np.abs(a - b) / np.where(size > 0, size, 1.0)
+    return float(np.max(change, initial=0.0, where=np.isfinite(change)))
+
+
+def _straight_solution(
+    s: Scene, checks: _Checks, reach: Reach, rtol: float, bent: Solution, x: np.ndarray
+) -> Solution | None:
+    """Straight lines for an FFT where that is cheaper than a matrix product over the bent path, and as good."""
+    dx = even_spacing(x)
+    if not dx:
+        return None
+    for tighten in (1.0, 1.4):
+        plan = spectral.plan_open(reach, rtol, tighten)
+        n = spectral.fast_length(math.ceil(plan.window / dx))
+        if not _fft_is_cheaper(n, bent.line.k.size, x.size):
+            return None
+        line = spectral.open_line(plan._replace(window=n * dx))
+        error, _ = _difference(s, checks, line, bent.line)
+        if error.max() <= rtol:
+            return Solution(line, np.maximum(error, bent.error), n)
+    return None
+
+
+def _fft_is_cheaper(n: int, modes: int, points: int) -> bool:
+    """Whether two FFTs of length n cost less than a row of a matrix product (in units that were measured)."""
+    return 7 * n * math.log2(n) < modes * points
+
+
+def _propagating_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solution:
+    """Gauss nodes over the propagating waves, doubled until two numbers of nodes agree."""
+    count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
+    for _ in range(6):
+        lines = [spectral.propagating_line(s.k0, list(s.branches), c) for c in (count, int(1.4 * count))]
+        error, _ = _difference(s, checks, *lines)
+        if error.max() <= rtol or count > MOST_MODES // 4:
+            break
+        count = int(1.8 * count)
+    return Solution(lines[1], error)
+
+
+def _difference(s: Scene, checks: _Checks, one: Line, two: Line) -> tuple[np.ndarray, float]:
+    """Estimated error of the first line over the largest |p| of each plane, by beam; and what is due to the band's edge."""
+    h1, h2 = (checks.transfer(line.k, checks.z) for line in (one, two))
+    errors, edges = [], []
+    for beam in checks.beams:
+        a, b = (point_sum(s, beam, line, h, checks.x) for line, h in ((one, h1), (two, h2)))
         largest = np.max(np.abs(a), axis=1)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            ratio = np.max(np.abs(a - b), axis=1) / largest
-        errors.append(np.max(np.where(largest > 1e-290, ratio, 0.0)))
-    return np.maximum(1.5 * np.array(errors), 4 * spectral.EPS)
+        seen = largest > 1e-290
+        scale = np.where(seen, largest, 1.0)
+        edge = _beyond(s, beam, two, h2) if beam.entire else np.zeros(largest.shape)
+        with np.errstate(invalid="ignore", over="ignore"):
+            error = np.max(np.abs(a - b), axis=1) / scale
+        errors.append(np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0)))
+        edges.append(np.max(np.where(seen, edge / scale, 0.0)))
+    return np.maximum(np.array(errors), 4 * spectral.EPS), float(max(edges))
+
+
+def _beyond(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> np.ndarray:
+    """Size of what lies beyond the end of a line, plane by plane: its last two tenths, continued geometrically."""
+    right, left = spectral.amplitudes(line, lambda k: beam.spectrum(k, s.k0), beam.centre)
+    size = (np.abs(right) + np.abs(left)) * np.abs(h)
+    tenth = max(1, line.k.size // 10)
+    last, before = size[:, -tenth:].sum(axis=1), size[:, -2 * tenth : -tenth].sum(axis=1)
+    ratio = np.clip(last / np.maximum(before, 1e-300), 0.0, 0.95)
+    return 2 * last * ratio / (1 - ratio)
 
 
 def point_sum(s: Scene, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -204,7 +252,7 @@ def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndar
     right, left = spectral.amplitudes(solution.line, lambda k: beam.spectrum(k, s.k0), beam.centre)
     x = x - beam.centre
     n = solution.fft
-    if n and n * math.log2(n) * 4 < solution.line.k.size * x.size:
+    if n and _fft_is_cheaper(n, solution.line.k.size, x.size):
         return spectral.fft_sum(solution.line, h, right, left, x, n)
     return spectral.direct_sum(solution.line, h, right, left, x)
 

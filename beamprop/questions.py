@@ -13,6 +13,7 @@ from . import datasets, propagate, response, sections, widths
 from .beam import Beam, sin_degrees
 from .conventions import outgoing_kz
 from .media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+from .scene import Scene, scene, scenes
 
 #: Wraps the items of a loop, to watch it.
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
@@ -296,7 +297,7 @@ def field(
     p = np.empty((flat.size, len(beams), z1.size, x1.size), complex)
     errors = np.full(p.shape[:2], np.nan)
     for i, frequency_i in enumerate(progress(flat)):
-        s = propagate.scene(slab, float(frequency_i))
+        s = scene(slab, float(frequency_i))
         _field_at(s, beams, x1, z1, period, rtol, p[i], errors[i])
     _announce(p, errors, rtol)
     axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
@@ -315,7 +316,7 @@ def field(
 
 
 def _field_at(
-    s: propagate.Scene,
+    s: Scene,
     beams: list[Beam],
     x: np.ndarray,
     z: np.ndarray,
@@ -421,7 +422,7 @@ def beam_width(
         for j in range(flat_angles.size)
     ]
     for rows, j in progress(work):
-        s = propagate.scenes(slab, flat[rows])
+        s = scenes(slab, flat[rows])
         found = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
         for name, values in found._asdict().items():
             table[name][rows, j] = values

@@ -254,6 +254,29 @@ def _march(
     return state, stations[::-1]
 
 
+def _near(
+    segments: list[SegmentValues], front: FluidValues, behind: FluidValues, omega: np.ndarray, kx: np.ndarray
+) -> tuple[np.ndarray, State, list[_Station]]:
+    """kz in front, and the state at the near face that leaves a unit outgoing wave behind."""
+    kz1 = outgoing_kz(kx, omega, *front)
+    kz2 = outgoing_kz(kx, omega, *behind)
+    exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
+    near, stations = _march(segments, omega, kx, exit_state)
+    return kz1, near, stations
+
+
+def dispersion(
+    segments: list[SegmentValues], before: FluidValues, after: FluidValues, omega: np.ndarray, kx: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The function whose zeros in kx are the guided modes, as (value, logarithm): value exp(logarithm). (F, n) each.
+
+    It is the incident amplitude that a unit outgoing wave behind the slab needs, times 2 i kz: the denominator of r and t.
+    """
+    front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
+    kz1, near, _ = _near(segments, front, behind, omega, kx)
+    return 1j * kz1 * near.p + front.rho_z * near.q, near.log
+
+
 def solve(
     segments: list[SegmentValues],
     before: FluidValues,
@@ -278,10 +301,7 @@ def solve(
     """
     kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex)
     front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
-    kz1 = outgoing_kz(kx, omega, *front)
-    kz2 = outgoing_kz(kx, omega, *behind)
-    exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
-    near, stations = _march(segments, omega, kx, exit_state)
+    kz1, near, stations = _near(segments, front, behind, omega, kx)
     forward, backward = 1j * kz1 * near.p + front.rho_z * near.q, 1j * kz1 * near.p - front.rho_z * near.q
     size = 2j * kz1
     grazing = kz1 == 0

@@ -14,11 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import propagate, spectral
+from . import modes, propagate, spectral
 from .beam import Beam
 from .conventions import outgoing_kz
-from .propagate import Scene, Transfer
+from .propagate import Transfer
 from .response import solve
+from .scene import Scene, at_frequency
 from .spectral import Line, OpenPlan, Reach
 from .widths import HALF_LEVEL, centroid, full_width
 
@@ -107,59 +108,76 @@ def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray,
     return spectral.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
 
 
-def measure(
-    s: Scene, slow: Callable[[int], tuple[Scene, Transfer, float]], beam: Beam, plane: Plane, path: Any, rtol: float
-) -> Measures:
-    """Width, peak and centroid of the profiles across one plane per frequency.
+class Route(NamedTuple):
+    """How a beam gets to the plane that is measured, at F frequencies."""
 
-    `path` is the length along z (F,); `slow(i)` gives what the slow path needs for frequency i.
-    """
+    scene: Scene
+    plane: Plane
+    transfer: Callable[[Scene], Transfer]  #: the same for the scene of one frequency
+    z: np.ndarray  #: (F,) where that transfer meets the plane
+    path: np.ndarray  #: (F,) length along z
+    guided: bool  #: whether there is a slab on the way
+
+
+def measure(route: Route, beam: Beam, rtol: float) -> Measures:
+    """Width, peak and centroid of the profiles across one plane per frequency."""
+    s = route.scene
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     count = s.omega.shape[0]
     out = Measures(*(np.full(count, np.nan) for _ in Measures._fields))
     good = np.zeros(count, bool)
     if beam.entire:
-        middle, half = landing(s, beam, plane)
-        plan = _plan(s, beam, path, middle, half, rtol)
+        middle, half = landing(s, beam, route.plane)
+        plan = _plan(s, beam, route.path, middle, half, rtol)
         if np.max(plan.band * plan.window) < 2 * np.pi * 20_000:
-            modes = _modes(s, beam, plane, spectral.open_line(plan))
-            second = _modes(s, beam, plane, spectral.open_line(plan.other()))
-            out, good = _measured(modes, second, plan, middle - beam.centre, half, level, rtol)
+            first, second = (_modes(s, beam, route.plane, spectral.open_line(p)) for p in (plan, plan.other()))
+            out, good = _measured(first, second, plan, middle - beam.centre, half, level, rtol)
             out = out._replace(centroid=out.centroid + beam.centre)
+            if route.guided:
+                good &= ~_backward(s, plan)
     for i in np.flatnonzero(~good):
-        one, transfer, z = slow(int(i))
-        out.width[i], out.peak[i], out.centroid[i] = _measured_alone(one, beam, transfer, z, rtol, level)
+        one = at_frequency(s, int(i))
+        found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
+        out.width[i], out.peak[i], out.centroid[i] = found
     return out
 
 
-def _sampled(modes: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
+def _backward(s: Scene, plan: OpenPlan) -> np.ndarray:
+    """Where the lines leave a mode on their wrong side, (F,)."""
+    bad = modes.some_between(s, 1.1 * plan.sigma, plan.band)
+    for i in np.flatnonzero(bad) if modes.is_lossless(s) else []:  # what was counted may be forward
+        bad[i] = bool(modes.between(at_frequency(s, int(i)), 1.1 * float(plan.sigma[i]), float(plan.band[i])).wrong)
+    return bad
+
+
+def _sampled(modal: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
     """p on an even grid over each whole window: x and p, (F, n)."""
-    line = modes.line
+    line = modal.line
     m = line.first + np.arange(line.k.shape[-1])
     n = spectral.fast_length(3 * int(np.max(np.abs(m))) + 1)
     x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
     bins = np.zeros((2, *line.k.shape[:-1], n), complex)
     turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
-    bins[0][:, m % n] = modes.right * turn
-    bins[1][:, -m % n] = modes.left * np.conj(turn)
+    bins[0][:, m % n] = modal.right * turn
+    bins[1][:, -m % n] = modal.left * np.conj(turn)
     right, left = spectral.transform(bins)
     grow = np.exp(line.sigma[:, None] * x)
     return x, right * grow + left / grow
 
 
 def _measured(
-    modes: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float, rtol: float
+    modal: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float, rtol: float
 ) -> tuple[Measures, np.ndarray]:
     """Measures from the samples and Newton's method, and where they can be trusted."""
-    x, p = _sampled(modes, plan)
+    x, p = _sampled(modal, plan)
     valid = np.abs(x - middle[:, None]) <= half[:, None]
     size = np.where(valid, np.abs(p), 0.0)
     rows = np.arange(size.shape[0])
     top = np.argmax(size, axis=-1)
     ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
     dx = plan.window / x.shape[-1]
-    position = _newton_peak(modes, x[rows, top], dx)
-    peak = np.abs(modes.at(position[:, None])[0][:, 0])
+    position = _newton_peak(modal, x[rows, top], dx)
+    peak = np.abs(modal.at(position[:, None])[0][:, 0])
     edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
     good = (edge < EDGE * level * peak) & (peak > 0)
     below = valid & (np.abs(p) < level * peak[:, None])
@@ -176,21 +194,21 @@ def _measured(
         ],
         axis=-1,
     )
-    edges = _newton_level(modes, inner, outer, level * peak)
+    edges = _newton_level(modal, inner, outer, level * peak)
     check = np.concatenate([edges, position[:, None]], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        error = 1.5 * np.max(np.abs(modes.at(check)[0] - second.at(check)[0]), axis=-1) / peak
+        error = 1.5 * np.max(np.abs(modal.at(check)[0] - second.at(check)[0]), axis=-1) / peak
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     good &= np.nan_to_num(error, nan=1.0) <= rtol
     return Measures(edges[:, 1] - edges[:, 0], peak, place), good
 
 
-def _newton_peak(modes: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
+def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     """Where |p|^2 is largest within a sample of start."""
     x = start
     for _ in range(5):
-        p, slope, bend = (v[:, 0] for v in modes.at(x[:, None]))
+        p, slope, bend = (v[:, 0] for v in modal.at(x[:, None]))
         first = (p.conj() * slope).real
         curve = np.abs(slope) ** 2 + (p.conj() * bend).real
         step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
@@ -198,11 +216,11 @@ def _newton_peak(modes: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     return x
 
 
-def _newton_level(modes: Modes, inner: np.ndarray, outer: np.ndarray, target: np.ndarray) -> np.ndarray:
+def _newton_level(modal: Modes, inner: np.ndarray, outer: np.ndarray, target: np.ndarray) -> np.ndarray:
     """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
     x = (inner + outer) / 2
     for _ in range(9):
-        p, slope, _ = modes.at(x)
+        p, slope, _ = modal.at(x)
         excess = np.abs(p) ** 2 - target[:, None] ** 2
         inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
         steep = 2 * (p.conj() * slope).real
@@ -215,7 +233,9 @@ def _newton_level(modes: Modes, inner: np.ndarray, outer: np.ndarray, target: np
 # --- one at a time ----------------------------------------------------------------------------------------
 
 
-def _measured_alone(s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float) -> tuple:
+def _measured_alone(
+    s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
+) -> tuple[float, float, float]:
     """Width, peak and centroid across the plane z, in a window that grows until its edges are below the level."""
     planes = np.array([z])
     batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
@@ -223,7 +243,7 @@ def _measured_alone(s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: fl
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
-        solution = propagate.choose_line(s, [beam], transfer, x, planes, rtol)
+        solution = propagate.choose_line(s, [beam], transfer, x, planes, rtol, guided)
         h = transfer(solution.line.k, planes)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
@@ -257,47 +277,20 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
     """Widths at all frequencies of a scene, at one angle."""
     wavelengths = 2 * np.pi / s.k0
 
-    def one(i: int) -> Scene:
-        return Scene(
-            [seg._replace(layers=seg.layers._replace(**_at(seg.layers, i))) for seg in s.segments],
-            type(s.before)(*(v[i : i + 1] for v in s.before)),
-            type(s.after)(*(v[i : i + 1] for v in s.after)),
-            s.omega[i : i + 1],
-            s.thickness,
-            float(s.k0[i]),
-            tuple(float(b[i]) for b in s.branches),
-        )
-
     def free(distance: np.ndarray) -> np.ndarray:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
-        return measure(
-            alone,
-            lambda i: (s1 := one(i)._replace(branches=(float(s.k0[i]),)), propagate.free(s1), float(distance[i])),
-            beam,
-            without(s, distance),
-            distance,
-            rtol,
-        ).width
+        route = Route(alone, without(s, distance), propagate.free, distance, distance, False)
+        return measure(route, beam, rtol).width
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
-    far = measure(
-        s,
-        lambda i: (s1 := one(i), propagate.through(s1, beam.z0), s.thickness),
-        beam,
-        far_face(s, beam.z0),
-        s.thickness - beam.z0,
-        rtol,
-    )
+    face = np.full(s.k0.shape, s.thickness)
+    through = Route(s, far_face(s, beam.z0), lambda one: propagate.through(one, beam.z0), face, face - beam.z0, True)
+    far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
     return Row(launch, near, far.width, air, far.peak, far.centroid)
-
-
-def _at(layers: Any, i: int) -> dict[str, np.ndarray]:
-    """Frequency i of a cell's values."""
-    return {n: getattr(layers, n)[:, i : i + 1] for n in ("mass", "compliance", "mobility", "vanishing")}
 
 
 def _launch_widths(s: Scene, beam: Beam) -> np.ndarray:

@@ -1,0 +1,106 @@
+"""A question to the finite elements, checked, with the mesh that it leads to and what solving it takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..beam import Beam
+from ..media import Slab, as_count, as_number
+from . import boundary, solvers, strip
+
+#: An order this share of the mesh's highest or lower is resolved as well as the errors of
+#: `SIZE_OVER_WAVELENGTH` ask.
+RESOLVED_SHARE = 1 / 4
+#: Finest default elements over those for the wavelength in front, whatever the beam's band.
+FINEST = 2
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a solve takes: unknowns, elements along x and z, memory [bytes] and time [s], both rough predictions."""
+
+    dofs: int
+    elements_x: int
+    elements_z: int
+    memory: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Task:
+    """Checked arguments, with the mesh that they lead to."""
+
+    slab: Slab
+    beam: Beam
+    frequency: float
+    period: float
+    order: int
+    elements_x: int
+    method: str
+    segments: list[strip.Segment]
+    rows: strip.Layout
+
+    @property
+    def omega(self) -> float:
+        return 2 * math.pi * self.frequency
+
+
+# --- checks and the mesh ----------------------------------------------------------------------------------
+
+
+def _check(slab: Any, beam: Any, frequency: Any, period: Any, order: Any, method: Any) -> tuple[float, float, int]:
+    if not isinstance(slab, Slab):
+        raise ValueError(f"slab: expected a Slab, got {slab!r}")
+    if not isinstance(beam, Beam):
+        raise ValueError(f"beam: expected a beam such as GaussianBeam, got {beam!r}")
+    if method not in solvers.SOLVERS:
+        raise ValueError(f"method: expected 'superelement' or 'sparse', got {method!r}")
+    order = as_count(order, "order")
+    if order not in strip.SIZE_OVER_WAVELENGTH:
+        raise ValueError(f"order: expected 1, 2, 3 or 4, got {order}")
+    return as_number(frequency, "frequency", positive=True), as_number(period, "period", positive=True), order
+
+
+def wavenumber(slab: Slab, frequency: float) -> float:
+    """|k| in front of the slab."""
+    k = abs(complex(slab.before.wavenumber(frequency)))
+    if not (math.isfinite(k) and k > 0):
+        raise ValueError(f"slab: expected a medium in front with a finite wavenumber, got {slab.before!r}")
+    return k
+
+
+def _mesh_orders(slab: Slab, beam: Beam, frequency: float, period: float, order: int) -> tuple[int, int]:
+    """Default number of elements along x, and the highest order of the beam that counts at the near face.
+
+    The elements are `SIZE_OVER_WAVELENGTH` of the wavelength in front, or finer by up to `FINEST` so that
+    orders with more than 1e-4 of the strongest on the near face stay within `RESOLVED_SHARE` of the mesh's
+    highest.
+    """
+    usual = max(4, math.ceil(period * wavenumber(slab, frequency) / (2 * math.pi * strip.SIZE_OVER_WAVELENGTH[order])))
+    found = boundary.orders(slab, beam, frequency, period, math.ceil(RESOLVED_SHARE * FINEST * usual * order / 2))
+    strength = np.abs(found.incident)
+    middle = strength.size // 2
+    highest = int(np.max(np.abs(np.flatnonzero(strength > 1e-4 * strength.max()) - middle), initial=0))
+    return min(max(usual, math.ceil(2 * highest / (order * RESOLVED_SHARE))), FINEST * usual), highest
+
+
+def make_task(
+    slab: Any, beam: Any, frequency: Any, period: Any, order: Any, elements_x: Any, method: Any, layer_rows: Any
+) -> Task:
+    frequency, period, order = _check(slab, beam, frequency, period, order, method)
+    usual, highest = _mesh_orders(slab, beam, frequency, period, order)
+    elements_x = usual if elements_x is None else as_count(elements_x, "elements_x")
+    kx = max(2 * math.pi / period * highest, wavenumber(slab, frequency))
+    segments = strip.slab_rows(slab, frequency, kx, order, as_count(layer_rows, "layer_rows"))
+    return Task(slab, beam, frequency, period, order, elements_x, method, segments, strip.layout(segments, order))
+
+
+def predict(task: Task) -> Plan:
+    n, rows = task.order * task.elements_x, task.rows
+    memory, seconds = solvers.COSTS[task.method](task.segments, rows, n, task.order)
+    elements_z = int(np.count_nonzero(np.array([row.thickness for row in rows.kinds])[rows.kind]))
+    return Plan(rows.lines * n, task.elements_x, elements_z, int(memory), float(seconds))

@@ -1,0 +1,292 @@
+"""Guided modes of a slab: zeros of the dispersion function in the plane of complex kx, found by the argument principle.
+
+Loss moves a mode off the real axis: up if it carries energy along Re kx (forward), down if against it (backward, which
+negative densities allow). A mode of a lossless slab lies on the axis, and is told apart by the way it moves when a
+trace of loss is added. The path of integration of a field passes below the real axis on the right; the modes between the
+axis and the path that belong below are on its wrong side, and small circles around them put that right.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from .response import dispersion
+from .scene import Scene, at_frequency
+from .spectral import Line
+
+#: Relative loss by which modes are told apart: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, for a slab
+#: whose densities cancel feels it magnified.
+LOSS = 1e-8
+#: A box of the search begins this far (relative) to the right of the last branch point.
+BESIDE = 1e-8
+
+#: D(kx) as (value, logarithm) for an array of kx.
+Dispersion = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+#: The same for several slabs or frequencies: kx, and which of them each belongs to.
+ManyDispersions = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class Mode(NamedTuple):
+    """One zero: kx [rad/m], +1 forward or -1 backward, and the last step of its refinement over kx."""
+
+    kx: complex
+    direction: int
+    residual: float
+
+
+def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
+    """D of a scene at one frequency, its layers made more lossy by `loss`."""
+    segments = []
+    for values in s.segments:
+        layers = values.layers
+        lossy = layers._replace(
+            mass=layers.mass + 1j * loss * np.abs(layers.mass),
+            compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
+            mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
+        )
+        segments.append(values._replace(layers=lossy))
+
+    def evaluate(kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        value, log = dispersion(segments, s.before, s.after, s.omega, np.asarray(kx, complex)[None])
+        return value[0], np.broadcast_to(log, value.shape)[0]
+
+    return evaluate
+
+
+def may_guide_backward(s: Scene) -> bool:
+    """Whether some layer has a negative density or modulus: without, every mode is a forward one."""
+    return any(
+        bool(np.any(v.real < 0))
+        for values in s.segments
+        for v in (values.layers.mass, values.layers.mobility, values.layers.compliance)
+    ) and not any(bool(np.any(values.layers.vanishing)) for values in s.segments)
+
+
+def winding(f: Dispersion, path: np.ndarray, finest: float) -> int:
+    """Turns of D about 0 along a closed path."""
+    return int(windings(lambda k, _: f(k), path[None], finest)[0])
+
+
+def windings(f: ManyDispersions, paths: np.ndarray, finest: float) -> np.ndarray:
+    """Turns of several D about 0, each along its own closed path: paths (P, n), turns (P,).
+
+    A step is halved until both halves change log D by little and alike; steps shorter than `finest` are left alone (a zero
+    lies on the path).
+    """
+    a = paths.astype(complex).ravel()
+    b = np.roll(paths, -1, axis=1).astype(complex).ravel()
+    owner = np.repeat(np.arange(paths.shape[0]), paths.shape[1])
+    value, log = f(a, owner)
+    at_a: tuple[np.ndarray, ...] = (value, log)
+    at_b = tuple(np.roll(v.reshape(paths.shape), -1, axis=1).ravel() for v in (value, log))
+    total = np.zeros(paths.shape[0])
+    while a.size:
+        middle = (a + b) / 2
+        at_middle = f(middle, owner)
+        first, second = _step(at_a, at_middle), _step(at_middle, at_b)
+        calm = (np.abs(first + second) < 1.5) & (np.abs(first - second) < 0.4)
+        calm |= np.abs(b - a) < finest
+        np.add.at(total, owner[calm], (first + second).imag[calm])
+        again = ~calm
+        a, b, middle, owner = a[again], b[again], middle[again], np.tile(owner[again], 2)
+        left, mid, right = ([v[again] for v in pair] for pair in (at_a, at_middle, at_b))
+        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
+        at_a = tuple(np.concatenate(pair) for pair in zip(left, mid, strict=True))
+        at_b = tuple(np.concatenate(pair) for pair in zip(mid, right, strict=True))
+    return np.rint(total / (2 * np.pi)).astype(int)
+
+
+def _step(one: tuple[np.ndarray, ...], two: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Change of log D from one point to another, its imaginary part within half a turn."""
+    change = two[1] - one[1] + np.log(np.where(two[0] == 0, 1e-300, two[0]) / np.where(one[0] == 0, 1e-300, one[0]))
+    return change.real + 1j * ((change.imag + np.pi) % (2 * np.pi) - np.pi)
+
+
+class Box(NamedTuple):
+    """A rectangle in the plane of kx."""
+
+    left: float
+    right: float
+    low: float
+    high: float
+
+    def outline(self, nodes: int = 24) -> np.ndarray:
+        """Its outline, counter-clockwise."""
+        u = np.arange(nodes) / nodes
+        a, b = self.left + u * (self.right - self.left), self.low + u * (self.high - self.low)
+        return np.concatenate(
+            [
+                a + 1j * self.low,
+                self.right + 1j * b,
+                self.right + self.left - a + 1j * self.high,
+                self.left + 1j * (self.high + self.low - b),
+            ]
+        )
+
+    def halves(self) -> tuple[Box, Box]:
+        """Two parts, not quite equal so that no symmetry puts a zero on the cut."""
+        if self.right - self.left > self.high - self.low:
+            cut = self.left + 0.4871 * (self.right - self.left)
+            return self._replace(right=cut), self._replace(left=cut)
+        cut = self.low + 0.4871 * (self.high - self.low)
+        return self._replace(high=cut), self._replace(low=cut)
+
+    def holds(self, k: complex, slack: float) -> bool:
+        """Whether k lies inside, or within `slack` of it."""
+        return (self.left - slack <= k.real <= self.right + slack) and (self.low - slack <= k.imag <= self.high + slack)
+
+
+def zeros(f: Dispersion, box: Box, scale: float, total: int) -> list[complex]:
+    """The `total` zeros of D inside a box, by halving it until Newton's method has one to find."""
+    found: list[complex] = []
+    todo = [(box, total)] if total > 0 else []
+    while todo:
+        part, count = todo.pop()
+        size = max(part.right - part.left, part.high - part.low)
+        if count == 1 or size < 1e-6 * scale:
+            k, step = refine(f, complex((part.left + part.right) / 2, (part.low + part.high) / 2), size / 8)
+            if step < 1e-9 * scale and part.holds(k, 1e-9 * scale) and _is_new(k, found, 1e-9 * scale):
+                found.append(k)
+                continue
+            if size < 1e-6 * scale:
+                continue
+        for half in part.halves():
+            inside = winding(f, half.outline(), 1e-9 * scale)
+            if inside > 0:
+                todo.append((half, inside))
+    return found
+
+
+def _is_new(k: complex, found: list[complex], apart: float) -> bool:
+    return all(abs(k - other) > apart for other in found)
+
+
+def refine(f: Dispersion, k: complex, reach: float, steps: int = 40) -> tuple[complex, float]:
+    """Newton's method with a numerical derivative, steps of at most `reach`: the zero, and the size of the last step."""
+    step = complex(reach)
+    for _ in range(steps):
+        h = max(1e-6 * abs(step), 1e-9 * abs(k), 1e-300)
+        value, log = f(np.array([k, k + h, k - h]))
+        value = value * np.exp(log - log[0])
+        slope = (value[1] - value[2]) / (2 * h)
+        if slope == 0 or not np.isfinite(slope):
+            return k, math.inf
+        step = -value[0] / slope
+        step *= min(1.0, reach / abs(step)) if step else 1.0
+        k += step
+        if abs(step) < 1e-13 * abs(k):
+            break
+    return complex(k), abs(step)
+
+
+def is_lossless(s: Scene) -> bool:
+    """Whether no layer and no half-space has loss."""
+    values = [v for seg in s.segments for v in (seg.layers.mass, seg.layers.compliance, seg.layers.mobility)]
+    return not any(np.any(v.imag) for v in (*values, *s.before, *s.after))
+
+
+def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600) -> list[complex]:
+    """Zeros of a lossless slab on the axis beyond the branch points, where D is real but for a constant phase."""
+    k = left + (right - left) * (np.arange(samples) + 0.5) / samples
+    value, log = f(k.astype(complex))
+    angle = np.angle(value) + np.imag(log)
+    sign = np.cos(angle - angle[0]) > 0
+    at = np.flatnonzero(sign[1:] != sign[:-1])
+    found = (refine(f, complex(k[i] + k[i + 1]) / 2, (k[i + 1] - k[i]) / 2) for i in at)
+    return [complex(k.real) for k, step in found if step < 1e-9 * right and abs(k.imag) < 1e-9 * right]
+
+
+def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
+    """All modes in a box, and how many the argument principle counts."""
+    f = dispersion_of(s)
+    lossless = is_lossless(s)
+    total = winding(f, box.outline(48), 1e-9 * box.right)
+    found: list[complex] = []
+    if total > 0 and lossless and box.low < 0 < box.high:
+        for k in real_zeros(f, box.left, box.right):
+            if _is_new(k, found, 1e-9 * box.right):
+                found.append(k)
+    if len(found) < total:
+        found = zeros(f, box, box.right, total)
+    modes = [Mode(k, _direction(s, k), refine(f, k, 1e-3 * abs(k), 2)[1] / abs(k)) for k in found]
+    return sorted(modes, key=lambda m: m.kx.real), total
+
+
+def _direction(s: Scene, k: complex) -> int:
+    """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
+    if abs(k.imag) > 1e-9 * abs(k):
+        return 1 if k.imag > 0 else -1
+    moved, _ = refine(dispersion_of(s, LOSS), k, 1e-4 * abs(k))
+    return 1 if (moved - k).imag >= 0 else -1
+
+
+class Between(NamedTuple):
+    """Modes near the real axis on the right: those that a path below the axis leaves on the wrong side, and all known."""
+
+    wrong: tuple[complex, ...]
+    known: tuple[complex, ...]
+
+
+NONE = Between((), ())
+
+
+def between(s: Scene, depth: float, band: float) -> Between:
+    """Modes below the real axis (or on it, but backward) and above a path at `depth` below it, 0 < Re kx < band."""
+    if not may_guide_backward(s):
+        return NONE
+    if not is_lossless(s):
+        modes = find_modes(s, Box(1e-3 * s.k0, band, -depth, 0.0))[0]
+    else:
+        edge = max(s.branches) * (1 + BESIDE)
+        modes = find_modes(s, Box(1e-3 * s.k0, min(edge, band), -depth, 0.0))[0]
+        if band > edge:
+            modes += find_modes(s, Box(edge, band, -depth, depth))[0]
+    return Between(tuple(m.kx for m in modes if m.direction < 0), tuple(m.kx for m in modes))
+
+
+def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
+    """Whether a path at `depth` may leave modes on its wrong side, by the argument principle at F frequencies at once: (F,).
+
+    Of a lossless slab any mode below or on the axis counts, forward or not.
+    """
+    if not may_guide_backward(s):
+        return np.zeros(depth.shape, bool)
+
+    def evaluate(kx: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        part = at_frequency(s, owner)
+        value, log = dispersion(part.segments, part.before, part.after, part.omega, kx[:, None])
+        return value[:, 0], np.broadcast_to(log, value.shape)[:, 0]
+
+    def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        boxes = [Box(*sides).outline(12) for sides in zip(left, right, low, high, strict=True)]
+        return windings(evaluate, np.array(boxes), 1e-9 * float(np.min(s.k0)))
+
+    zero, start = np.zeros(depth.shape), 1e-3 * s.k0
+    if not is_lossless(s):
+        return count(start, band, -depth, zero) > 0
+    edge = np.max(np.stack(s.branches), axis=0) * (1 + BESIDE)
+    below = count(start, np.minimum(edge, band), -depth, zero) > 0
+    return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
+
+
+def with_circles(line: Line, found: Between, branches: tuple[float, ...], reach: float) -> Line:
+    """Add to a path small clockwise circles around the modes that lie above it and should lie below.
+
+    A circle keeps away from all other modes and branch points known; trapezoid rule, 32 nodes.
+    """
+    above = [k for k in found.wrong if k.imag > np.interp(k.real, line.k.real, line.k.imag)]
+    if not above:
+        return line
+    nodes, weights = [], []
+    turn = np.exp(-2j * np.pi * (np.arange(32) + 0.5) / 32)
+    for k in above:
+        others = [abs(k - other) for other in (*found.known, *branches) if abs(k - other) > 1e-9 * abs(k)]
+        radius = min(0.4 * min(others, default=abs(k)), 1.0 / reach)
+        nodes.append(k + radius * turn)
+        weights.append(radius * turn * (-2j * np.pi / 32) / (2 * np.pi))
+    # in front, so that the path's end stays the last node
+    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]))
