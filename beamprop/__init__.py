@@ -22,14 +22,32 @@ if TYPE_CHECKING:
     from .datasets import provenance
     from .homogenize import lmmd_emt, lmmd_emt_slab, standard_emt
     from .media import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
-    from .questions import AccuracyWarning, beam_width, bloch, field, fwhm, scattering
+    from .questions import (
+        AccuracyWarning,
+        beam_measures,
+        beam_width,
+        bloch,
+        field,
+        fwhm,
+        guided_modes,
+        scattering,
+    )
     from .storage import load, save
 
 _HOMES = {
     "media": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
     "homogenize": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
     "beam": ("GaussianBeam", "Profile", "Slits"),
-    "questions": ("AccuracyWarning", "beam_width", "bloch", "field", "fwhm", "scattering"),
+    "questions": (
+        "AccuracyWarning",
+        "beam_measures",
+        "beam_width",
+        "bloch",
+        "field",
+        "fwhm",
+        "guided_modes",
+        "scattering",
+    ),
     "comparison": ("compare",),
     "comsol": ("read_comsol", "to_grid"),
     "datasets": ("provenance",),
@@ -50,12 +68,14 @@ __all__ = [
     "Slab",
     "Slits",
     "__version__",
+    "beam_measures",
     "beam_width",
     "bloch",
     "compare",
     "fem",
     "field",
     "fwhm",
+    "guided_modes",
     "lmmd_cell",
     "lmmd_emt",
     "lmmd_emt_slab",

@@ -187,7 +187,7 @@ def _straight_solution(
         return None
     for tighten in (1.0, 1.4):
         plan = spectral.plan_open(reach, rtol, tighten)
-        n = spectral.fast_length(math.ceil(plan.window / dx))
+        n = spectral.fast_length(max(math.ceil(plan.window / dx), x.size))
         if not _fft_is_cheaper(n, bent.line.k.size, x.size):
             return None
         line = spectral.open_line(plan._replace(window=n * dx))

@@ -14,8 +14,10 @@ import fig5
 import fig6
 
 #: Statements of the paper that the exact solution does not confirm.
-EXCEPTIONS = {("4(b)", "contours are flatter for larger N"),
-              ("6", "widths behind the lossless slab almost unchanged from 2 to 3 kHz")}
+EXCEPTIONS = {
+    ("4(b)", "contours are flatter for larger N"),
+    ("6", "widths behind the lossless slab almost unchanged from 2 to 3 kHz"),
+}
 
 
 @pytest.mark.parametrize("figure", [fig2, fig3, fig4, fig5, fig6], ids=lambda m: m.__name__)

@@ -1,0 +1,194 @@
+"""The questions: field, width, spectrum, bloch, modes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from .answer import answer, table
+from .options import BEAM, CELL, OUTPUT, SLAB, Axis, Target, beam_of, cell_of, option, progress, slab_of, spaced
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@click.command()
+@SLAB
+@BEAM
+@option("--frequency", default="2000:3000:101", kind=Axis(), text="[Hz], an axis.")
+@option("--z0", default=0.0, text="Launch plane, at or in front of the near face at 0 [m].")
+@click.option("--air-distance", type=float, help="Of the comparison without the slab [m]; two wavelengths by default.")
+@OUTPUT
+def width(**o: Any) -> None:
+    """Beam widths against frequency or angle (the paper's Fig. 6)."""
+
+    def ask() -> xr.Dataset:
+        from ..questions import beam_width
+
+        return beam_width(
+            slab_of(o),
+            beam_of(o, o["z0"]),
+            o["frequency"],
+            o["angle"],
+            o["rtol"],
+            o["air_distance"],
+            progress=progress(o["quiet"], "widths"),
+        )
+
+    def draw(ds: xr.Dataset) -> Any:
+        from .. import plot
+
+        return plot.width(ds)
+
+    _needs_axis(o, "frequency", "angle")
+    names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
+    answer(o, ask, draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
+
+
+def _needs_axis(o: dict[str, Any], *names: str) -> None:
+    if o["plot"] and not any(isinstance(o[n], list) for n in names):
+        raise click.UsageError(f"--plot: expected an axis for {' or '.join('--' + n for n in names)}, got one value")
+
+
+@click.command()
+@SLAB
+@BEAM
+@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
+@option("--z0", default=-0.1, text="Launch plane, at or in front of the near face at 0 [m].")
+@option("--x", default="-0.7:0.7:561", kind=Axis(), text="Lateral positions [m], an axis.")
+@click.option(
+    "--z", type=Axis(), help="Depths [m], an axis; from the launch plane to a little behind the slab by default."
+)
+@option("--boundary", default="open", kind=click.Choice(["open", "periodic"]), text="One beam, or a periodic array.")
+@click.option("--period", type=float, help="Of the periodic array [m].")
+@option("--quantity", default="abs", kind=click.Choice(["abs", "real"]), text="What --plot draws.")
+@OUTPUT
+def field(**o: Any) -> None:
+    """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
+
+    def ask() -> xr.Dataset:
+        from ..questions import field
+
+        slab = slab_of(o)
+        z = o["z"] or spaced(o["z0"], 1.25 * slab.thickness, 561)
+        return field(
+            slab,
+            beam_of(o, o["z0"]),
+            o["frequency"],
+            o["x"],
+            z,
+            o["angle"],
+            o["boundary"],
+            o["period"],
+            o["rtol"],
+            progress=progress(o["quiet"], "fields"),
+        )
+
+    def draw(ds: xr.Dataset) -> Any:
+        from .. import plot
+
+        return plot.field(ds, o["quantity"])
+
+    if o["plot"] and (isinstance(o["frequency"], list) or isinstance(o["angle"], list)):
+        raise click.UsageError("--plot: expected one frequency and one angle, got several")
+    answer(o, ask, draw, _field_summary)
+
+
+def _field_summary(ds: xr.Dataset) -> str:
+    sizes = ", ".join(f"{d} {n}" for d, n in ds["p"].sizes.items())
+    lines = [f"p on ({sizes}); largest |p| {float(abs(ds['p']).max()):.6g} Pa"]
+    if "error_estimate" in ds:
+        lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
+    return "\n".join(lines)
+
+
+@click.command()
+@SLAB
+@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
+@click.option("--kx-over-k0", type=Axis(), help="An axis; 0:5:1001 by default.")
+@click.option("--kx", type=Axis(), help="[rad/m], an axis.")
+@click.option("--angle", type=Axis(), help="[degree], an axis.")
+@option(
+    "--quantity",
+    default="transmissivity",
+    kind=click.Choice(["transmissivity", "reflectivity", "energy_transmission", "absorption"]),
+    text="What --plot draws.",
+)
+@click.option("--log", is_flag=True, help="Draw on a logarithmic scale.")
+@OUTPUT
+def spectrum(**o: Any) -> None:
+    """Plane-wave reflection and transmission against kx or angle (the paper's Figs. 2 and 3)."""
+    axes = {n: o[n] for n in ("kx_over_k0", "kx", "angle") if o[n] is not None} or {
+        "kx_over_k0": spaced(0.0, 5.0, 1001)
+    }
+
+    def ask() -> xr.Dataset:
+        from ..questions import scattering
+
+        return scattering(slab_of(o), o["frequency"], **axes)
+
+    def draw(ds: xr.Dataset) -> Any:
+        from .. import plot
+
+        return plot.scattering(ds, o["quantity"], log=o["log"])
+
+    if o["plot"] and not any(isinstance(v, list) for v in axes.values()):
+        raise click.UsageError("--plot: expected an axis for kx, kx-over-k0 or angle, got one value")
+    names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
+    answer(o, ask, draw, lambda ds: table(ds, names))
+
+
+@click.command()
+@CELL
+@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
+@option("--kx-over-k0", default="-10:10:801", kind=Axis(), text="An axis.")
+@OUTPUT
+def bloch(**o: Any) -> None:
+    """Bloch wavenumber of the infinite medium against kx: equifrequency contours (the paper's Fig. 4)."""
+
+    def ask() -> xr.Dataset:
+        from ..questions import bloch
+
+        cell, background = cell_of(o)
+        return bloch(cell, o["frequency"], kx_over_k0=o["kx_over_k0"], background=background)
+
+    def draw(ds: xr.Dataset) -> Any:
+        from .. import plot
+
+        return plot.bloch(ds)
+
+    def summary(ds: xr.Dataset) -> str:
+        kz = ds["kz_over_k0"]
+        return table(ds.assign({"Re kz/k0": kz.real, "Im kz/k0": kz.imag}), ("Re kz/k0", "Im kz/k0"))
+
+    _needs_axis(o, "kx_over_k0")
+    answer(o, ask, draw, summary)
+
+
+@click.command()
+@SLAB
+@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
+@option("--kx-over-k0-max", default=10.0, text="Search up to this Re kx over k0.")
+@option("--strip-over-k0", default=0.5, text="Search up to this |Im kx| over k0.")
+@click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the dataset to this .nc or .zarr.")
+@click.option("--json", "as_json", is_flag=True, help="Print the dataset as JSON.")
+@click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json.")
+def modes(**o: Any) -> None:
+    """The modes that the slab guides, with the direction of their energy."""
+
+    def ask() -> xr.Dataset:
+        from ..questions import guided_modes
+
+        return guided_modes(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
+
+    def summary(ds: xr.Dataset) -> str:
+        if ds.sizes["mode"] == 0:
+            return "no guided mode in the strip"
+        k = ds["kx_over_k0"]
+        return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
+
+    answer(o | {"plot": None}, ask, None, summary)
+
+
+COMMANDS = (field, width, spectrum, bloch, modes)

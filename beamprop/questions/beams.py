@@ -1,0 +1,279 @@
+"""Questions about beams: the field, the widths."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import datasets, propagate, sections, widths
+from ..beam import Beam
+from ..media import Slab, as_number
+from ..scene import Scene, scene, scenes
+from . import checks
+from .checks import Progress
+
+
+class AccuracyWarning(UserWarning):
+    """A field whose estimated error is above the asked rtol."""
+
+
+def field(
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    x: Any,
+    z: Any,
+    angle: Any = None,
+    boundary: str = "open",
+    period: float | None = None,
+    rtol: float = 1e-8,
+    progress: Progress = iter,
+) -> xr.Dataset:
+    """Total pressure of a beam in front of, inside and behind a slab.
+
+    Parameters
+    ----------
+    slab : Slab
+    beam : GaussianBeam, Profile or Slits
+    frequency : float or 1-D array, Hz
+    x, z : float or 1-D array, m
+        Any positions; z not in front of the launch plane ``beam.z0``.
+    angle : float or 1-D array, degree, optional
+        Overrides the beam's. All angles share one response.
+    boundary : "open" or "periodic"
+        "open": one beam in open space, the limit of vanishing absorption. "periodic": an array of beams, `period`
+        apart: the plain sum over real kx, which is what a calculation with periodic sides answers.
+    period : float, m
+        For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
+    rtol : float
+        Asked error of the open field over the largest |p| of each plane.
+    progress : function
+        Wraps the list of frequencies that is worked through (``tqdm.tqdm``, say).
+
+    Returns
+    -------
+    Dataset
+        `p` on (frequency, angle, z, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
+        open fields: the largest difference between two contours of integration that share no error term.
+
+    Warns
+    -----
+    AccuracyWarning
+        The estimate is above rtol.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, what was expected and what came.
+    """
+    checks.instance(slab, Slab, "slab")
+    checks.instance(beam, Beam, "beam")
+    f, xs, zs = checks.axis(frequency, "frequency", positive=True), checks.axis(x, "x"), checks.axis(z, "z")
+    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    if boundary not in ("open", "periodic"):
+        raise ValueError(f"boundary: expected 'open' or 'periodic', got {boundary!r}")
+    if np.min(zs) < beam.z0:
+        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+    beams = [beam.at_angle(float(a)) for a in np.atleast_1d(angles)]
+    flat, x1, z1 = (np.atleast_1d(v) for v in (f, xs, zs))
+    if boundary == "periodic":
+        period = _period(period, x1, beam, slab, flat)
+    elif period is not None:
+        raise ValueError(f"period: expected none with boundary='open', got {period!r}")
+    p = np.empty((flat.size, len(beams), z1.size, x1.size), complex)
+    errors = np.full(p.shape[:2], np.nan)
+    for i, frequency_i in enumerate(progress(flat)):
+        s = scene(slab, float(frequency_i))
+        _field_at(s, beams, x1, z1, period, rtol, p[i], errors[i])
+    _announce(p, errors, rtol)
+    axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
+    dims, pick = checks.dims(**axes)
+    few = tuple(d for d in dims if d in ("frequency", "angle"))
+    variables: dict[str, Any] = {"p": (dims, p[pick])}
+    if boundary == "open":
+        variables["error_estimate"] = (few, errors[pick[:2]])
+    ds = datasets.make(
+        variables,
+        checks.coords(**axes),
+        "field",
+        flat,
+        slab=slab,
+        beam=beam,
+        boundary=boundary,
+        period=period,
+        rtol=rtol,
+    )
+    ds.attrs |= {"boundary": boundary, "slab_thickness": slab.thickness}
+    if period is not None:
+        ds.attrs["period"] = period
+    return ds
+
+
+def _field_at(
+    s: Scene,
+    beams: list[Beam],
+    x: np.ndarray,
+    z: np.ndarray,
+    period: float | None,
+    rtol: float,
+    out: np.ndarray,
+    errors: np.ndarray,
+) -> None:
+    """Fill out (angle, z, x) and errors (angle) at one frequency, in blocks of planes of bounded memory."""
+    transfer = propagate.through(s, beams[0].z0)
+    if period is None:
+        solution = propagate.choose_line(s, beams, transfer, x, z, rtol)
+        errors[:] = solution.error
+    else:
+        solution = propagate.periodic_solution(s, beams, x, period)
+    block = max(16, 20_000_000 // (16 * max(1, solution.line.k.size)))
+    for start in range(0, z.size, block):
+        rows = slice(start, start + block)
+        h = transfer(solution.line.k, z[rows])
+        for j, beam in enumerate(beams):
+            out[j, rows] = propagate.beam_sum(s, beam, solution, h, x)
+
+
+def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
+    """The period of a periodic boundary; refused where neighbouring beams overlap."""
+    if period is None:
+        dx = propagate.even_spacing(x)
+        if not dx:
+            raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
+        period = dx * x.size
+    value = as_number(period, "period", positive=True)
+    k0 = float(checks.k0(slab, frequency)[0])
+    across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
+    seam = float(max(abs(across[0]), abs(across[-1])) / np.abs(across).max())
+    if seam > 1e-2:
+        raise ValueError(
+            f"period: expected a grid wide enough for the beam, got {value:.6g} m, at whose ends the launched |p| is "
+            f"still {seam:.2g} of its largest"
+        )
+    return value
+
+
+def _announce(p: np.ndarray, errors: np.ndarray, rtol: float) -> None:
+    """Nothing that is not finite leaves, and nothing above rtol leaves without a word."""
+    if not np.all(np.isfinite(p)):
+        raise ValueError(
+            "the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow"
+        )
+    worst = np.max(errors, initial=0.0, where=np.isfinite(errors))
+    if worst > rtol:
+        warnings.warn(
+            f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+
+
+def beam_width(
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    angle: Any = None,
+    rtol: float = 1e-8,
+    air_distance: float | None = None,
+    progress: Progress = iter,
+) -> xr.Dataset:
+    """Widths of a beam: launched, at the near face, behind the slab, and after a distance without the slab.
+
+    Parameters
+    ----------
+    slab : Slab
+    beam : GaussianBeam, Profile or Slits
+    frequency : float or 1-D array, Hz
+    angle : float or 1-D array, degree, optional
+        Overrides the beam's.
+    rtol : float
+        Asked error of the fields over their largest |p|.
+    air_distance : float, m, optional
+        Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
+    progress : function
+        Wraps the list of blocks that is worked through (``tqdm.tqdm``, say).
+
+    Returns
+    -------
+    Dataset
+        On (frequency, angle): `fwhm_launch`, `fwhm_in` (near face, incident beam alone), `fwhm_out` (far face), `fwhm_air`
+        [m]; `peak_out` [Pa] and `centroid_out` [m] at the far face. Widths are of |p|, or of |p|^2 for a beam
+        whose `width_of` is "intensity": between the two places nearest to the peak where it is reached. The centroid is
+        taken over the window recorded as attribute. nan, with a warning, where the half level is not met.
+    """
+    checks.instance(slab, Slab, "slab")
+    checks.instance(beam, Beam, "beam")
+    f = checks.axis(frequency, "frequency", positive=True)
+    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    if air_distance is not None:
+        air_distance = as_number(air_distance, "air_distance", positive=True)
+    flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    names = sections.Row._fields
+    table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
+    work = [
+        (rows, j)
+        for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
+        for j in range(flat_angles.size)
+    ]
+    for rows, j in progress(work):
+        s = scenes(slab, flat[rows])
+        found = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        for name, values in found._asdict().items():
+            table[name][rows, j] = values
+    missing = [name for name in names if np.any(np.isnan(table[name]))]
+    if missing:
+        warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
+    dims, pick = checks.dims(frequency=f, angle=angles)
+    return datasets.make(
+        {n: (dims, v[pick]) for n, v in table.items()},
+        checks.coords(frequency=f, angle=angles),
+        "beam_width",
+        flat,
+        slab=slab,
+        beam=beam,
+        rtol=rtol,
+        air_distance=air_distance,
+    )
+
+
+def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> xr.DataArray:
+    """Full width at half maximum of a profile along a dimension.
+
+    Parameters
+    ----------
+    profile : DataArray
+        Complex pressure (or \\|p\\|).
+    dim : str
+    width_of : "pressure" or "intensity"
+        Width of \\|p\\|, or of \\|p\\|^2.
+
+    Returns
+    -------
+    DataArray
+        In the units of `dim`, located on a cubic spline of the samples; nan with a warning where the half level is not
+        reached inside the window.
+    """
+    if not isinstance(profile, xr.DataArray):
+        raise ValueError(f"profile: expected a DataArray, got {type(profile).__name__}")
+    if dim not in profile.dims:
+        raise ValueError(f"dim: expected one of {', '.join(map(str, profile.dims))}, got {dim!r}")
+    if width_of not in widths.HALF_LEVEL:
+        raise ValueError(f"width_of: expected 'pressure' or 'intensity', got {width_of!r}")
+    if profile.sizes[dim] < 4:
+        raise ValueError(f"profile: expected at least 4 samples along {dim}, got {profile.sizes[dim]}")
+    ordered = profile.sortby(dim)
+    x = np.asarray(ordered[dim], float)
+    if not np.all(np.isfinite(ordered)):
+        raise ValueError("profile: expected finite values, got NaN or infinity")
+
+    def one(p: np.ndarray) -> float:
+        return widths.full_width(x, p, widths.HALF_LEVEL[width_of]).width
+
+    out = xr.apply_ufunc(one, ordered, input_core_dims=[[dim]], vectorize=True, output_dtypes=[float])
+    if np.any(np.isnan(out)):
+        warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)
+    out.attrs = {"units": profile[dim].attrs.get("units", "m"), "long_name": "full width at half maximum"}
+    return out.rename("fwhm")

@@ -1,0 +1,216 @@
+"""Question about a beam as a whole: widths by three definitions, place, shift, power, divergence."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from .. import datasets, propagate, spectral, widths
+from ..beam import Beam
+from ..conventions import outgoing_kz
+from ..media import FluidValues, Slab
+from ..response import solve
+from ..scene import Scene, scene
+from . import checks
+from .checks import Progress
+
+#: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
+TAIL = 0.01
+SIDES = ("reflected", "transmitted")
+
+
+class Beamlet(NamedTuple):
+    """Measures of one outgoing beam at a face; names of the dataset's variables."""
+
+    fwhm: float
+    width_1e2: float
+    width_second_moment: float
+    centroid: float
+    lateral_shift: float
+    peak: float
+    power: float
+    divergence: float
+    far_angle: float
+    crossings: int
+
+
+def beam_measures(
+    slab: Slab, beam: Beam, frequency: Any, angle: Any = None, rtol: float = 1e-6, progress: Progress = iter
+) -> xr.Dataset:
+    """The reflected beam at the near face and the transmitted beam at the far face, measured.
+
+    Parameters
+    ----------
+    slab : Slab
+    beam : GaussianBeam, Profile or Slits
+    frequency : float or 1-D array, Hz
+    angle : float or 1-D array, degree, optional
+        Overrides the beam's.
+    rtol : float
+        Asked error of the fields over their largest |p|.
+    progress : function
+        Wraps the list of (frequency, angle) pairs that is worked through.
+
+    Returns
+    -------
+    Dataset
+        On (frequency, angle, side):
+
+        * `fwhm`, `width_1e2` [m]: between the places nearest to the peak where |p| is half, |p|^2 is 1/e^2 of the largest;
+        * `width_second_moment` (four standard deviations of |p|^2; 2 a of a Gaussian of 1/e radius a) and `centroid` [m],
+          inside the part around the peak where |p| exceeds a hundredth of it;
+        * `lateral_shift` [m]: centroid less the geometric ray: for the reflected beam the ray that meets the near face (the
+          Goos-Haenchen shift), for the transmitted one the same ray carried straight on to the far face;
+        * `peak` [Pa]; `power`: radiated share of the launched power (plane waves that propagate; evanescent and guided
+          waves carry none away along z);
+        * `divergence` and `far_angle` [degree]: two standard deviations and mean of the direction of the radiated power;
+        * `crossings`: how often |p| crosses the half level inside the window; 2 for a plain beam.
+
+    Warns
+    -----
+    RuntimeWarning
+        A level is not reached inside the window (nan), or the half level is met more than twice.
+    """
+    checks.instance(slab, Slab, "slab")
+    checks.instance(beam, Beam, "beam")
+    f = checks.axis(frequency, "frequency", positive=True)
+    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
+    for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
+        s = scene(slab, float(flat[i]))
+        for side, beamlet in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol)):
+            for name, value in beamlet._asdict().items():
+                table[name][i, j, side] = value
+    _announce(table)
+    dims, pick = checks.dims(frequency=f, angle=angles)
+    coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
+    variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
+    variables["crossings"] = (variables["crossings"][0], variables["crossings"][1].astype(int))
+    return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=rtol)
+
+
+def _announce(table: dict[str, np.ndarray]) -> None:
+    missing = [name for name, values in table.items() if np.any(np.isnan(values))]
+    if missing:
+        warnings.warn(f"level not reached inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=3)
+    most = int(table["crossings"].max())
+    if most > 2:
+        warnings.warn(
+            f"the half level is met up to {most} times; widths are between the two places nearest to the peak",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
+def _both(s: Scene, beam: Beam, rtol: float) -> list[Beamlet]:
+    slope = math.tan(math.radians(beam.angle))
+    ray = beam.centre - beam.z0 * slope
+    launched = _power(s, beam, lambda kx: np.ones(kx.shape), s.before, s.k0)[0]
+    out = []
+    for transfer, place, fluid in (
+        (_reflected(s, beam.z0), ray, s.before),
+        (_transmitted(s, beam.z0), ray + s.thickness * slope, s.after),
+    ):
+        out.append(_measure(s, beam, transfer, place, fluid, launched, rtol))
+    return out
+
+
+#: kx (n,) -> h (n,)
+Face = Callable[[np.ndarray], np.ndarray]
+
+
+def _launch(s: Scene, kx: np.ndarray, z0: float) -> np.ndarray:
+    return np.exp(-1j * outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before)) * z0)
+
+
+def _reflected(s: Scene, z0: float) -> Face:
+    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).r[0] * _launch(s, kx, z0)
+
+
+def _transmitted(s: Scene, z0: float) -> Face:
+    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).t[0] * _launch(s, kx, z0)
+
+
+def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float) -> Beamlet:
+    plane = np.array([s.thickness])
+    half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
+    for _ in range(7):
+        x = beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
+        solution = propagate.choose_line(s, [beam], lambda kx, _: face(kx)[None], x, plane, rtol)
+        h = face(solution.line.k)[None]
+        p = propagate.beam_sum(s, beam, solution, h, x)[0]
+        size = np.abs(p)
+        if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
+            break
+        half *= 2
+    between = _between(s, beam, solution.line, h)
+    full = widths.full_width(x, p, 0.5, between)
+    e2 = widths.full_width(x, p, math.exp(-1), between)
+    centroid, spread = _moments(x, size)
+    power, mean, deviation = _power(s, beam, face, fluid, _far_k(s, fluid))
+    crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
+    return Beamlet(
+        full.width,
+        e2.width,
+        4 * spread,
+        centroid,
+        centroid - ray,
+        full.peak,
+        power / launched if launched > 0 else math.nan,
+        2 * deviation,
+        mean,
+        crossings,
+    )
+
+
+def _between(s: Scene, beam: Beam, line: spectral.Line, h: np.ndarray) -> widths.Evaluate:
+    return lambda at: propagate.point_sum(s, beam, line, h, at)[0]
+
+
+def _samples(s: Scene, beam: Beam, half: float) -> int:
+    finest = max(abs(k) for k in beam.band(s.k0, 1e-3))
+    return 2 * int(min(max(64, math.ceil(2 * half * finest / np.pi)), 40_000)) + 1
+
+
+def _moments(x: np.ndarray, size: np.ndarray) -> tuple[float, float]:
+    """Centroid and standard deviation of |p|^2 where it is connected to the peak above the tail; nan if that is cut off."""
+    top = int(np.argmax(size))
+    below = np.flatnonzero(size < TAIL * size[top])
+    left, right = below[below < top], below[below > top]
+    if left.size == 0 or right.size == 0:
+        return math.nan, math.nan
+    part = slice(left[-1], right[0] + 1)
+    x, weight = x[part], size[part] ** 2
+    total = np.trapezoid(weight, x)
+    centre = np.trapezoid(weight * x, x) / total
+    return float(centre), float(np.sqrt(np.trapezoid(weight * (x - centre) ** 2, x) / total))
+
+
+def _far_k(s: Scene, fluid: FluidValues) -> float:
+    """Wavenumber of the propagating waves of a half-space, 0 if it has none."""
+    k = complex(s.omega[0, 0] * np.sqrt(fluid.rho_x[0] / fluid.bulk_modulus[0]))
+    return abs(k.real) if np.isfinite(k) else 0.0
+
+
+def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tuple[float, float, float]:
+    """Radiated power of S h [W/m, but for a constant], and mean and deviation of its direction [degree]."""
+    if k == 0:
+        return 0.0, math.nan, math.nan
+    extent = beam.reach(1e-6) + s.thickness - beam.z0
+    line = spectral.propagating_line(k, list(s.branches), int(200 + 2 * k * extent))
+    kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
+    flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
+    right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))
+    total = float((right + left).sum())
+    if not total > 0:
+        return 0.0, math.nan, math.nan
+    angle = np.degrees(np.arcsin(np.clip(line.k.real / k, -1, 1)))
+    mean = float(((right - left) * angle).sum()) / total
+    square = float((right * (angle - mean) ** 2 + left * (angle + mean) ** 2).sum()) / total
+    return total, mean, math.sqrt(square)

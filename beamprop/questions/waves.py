@@ -1,0 +1,207 @@
+"""Questions about plane waves: scattering by a slab, Bloch waves of a cell."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import datasets, modes, response
+from ..conventions import outgoing_kz
+from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+from ..scene import scene
+from . import checks
+
+
+def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, angle: Any = None) -> xr.Dataset:
+    """Exact reflection and transmission of plane waves by a slab.
+
+    Parameters
+    ----------
+    slab : Slab
+    frequency : float or 1-D array, Hz
+    kx, kx_over_k0, angle : float or 1-D array
+        One of: lateral wavenumber [rad/m] (may be complex: continued as a small loss would, see
+        `conventions.outgoing_kz`), the same over that of ``slab.before``, or angle of incidence [degree].
+
+    Returns
+    -------
+    Dataset
+        On (frequency, the one given): complex `r`, `t`; `transmissivity` = \\|t\\|^2 and `reflectivity` = \\|r\\|^2 (the paper's
+        pressure ratios, for evanescent waves too); `energy_transmission` = \\|t\\|^2 Re(kz_after/rho_after) /
+        Re(kz_before/rho_before) and `absorption` = 1 - reflectivity - energy_transmission, nan unless the incident
+        wave propagates in a lossless `before`.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, what was expected and what came.
+    """
+    checks.instance(slab, Slab, "slab")
+    f = checks.axis(frequency, "frequency", positive=True)
+    name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
+    flat = np.atleast_1d(f)
+    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
+    before, after = slab.before.at(flat), slab.after.at(flat)
+    omega = 2 * np.pi * flat[:, None]
+    res = response.solve(slab_values(slab, flat), before, after, omega, k)
+    if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
+        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
+    energy, absorption = _energies(res.r, res.t, k, omega, before, after)
+    dims, pick = checks.dims(frequency=f, **{name: axis})
+    variables = {
+        "r": res.r,
+        "t": res.t,
+        "transmissivity": np.abs(res.t) ** 2,
+        "reflectivity": np.abs(res.r) ** 2,
+        "energy_transmission": energy,
+        "absorption": absorption,
+    }
+    coords = checks.coords(frequency=f, **{name: axis})
+    coords |= _other_coords(slab, name, k, flat, dims, pick)
+    return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
+
+
+def _energies(r: np.ndarray, t: np.ndarray, kx: np.ndarray, omega: np.ndarray, before: Any, after: Any) -> tuple:
+    """energy_transmission and absorption; nan where the incident wave carries no power of its own."""
+    front, behind = ([v[:, None] for v in fluid] for fluid in (before, after))
+    y1 = outgoing_kz(kx, omega, *front) / front[0]
+    y2 = (outgoing_kz(kx, omega, *behind) / behind[0]).real
+    lossless = np.all([np.imag(v) == 0 for v in front], axis=0)
+    carries = lossless & (np.imag(kx) == 0) & (np.abs(y1.imag) <= 1e-12 * np.abs(y1))
+    ratio = np.divide(y2, y1.real, out=np.where(t == 0, 0.0, 1.0), where=carries & (y1.real != 0))
+    T = np.where(carries, np.abs(t) ** 2 * ratio, np.nan)
+    return T, 1 - np.abs(r) ** 2 - T
+
+
+def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, dims: tuple, pick: tuple) -> dict:
+    """kx and kx_over_k0 (and the angle, when that was given) as coordinates on the axis."""
+    others: dict[str, Any] = {}
+    if name != "kx":
+        fixed = frequency.size == 1 or np.array_equal(k, np.broadcast_to(k[:1], k.shape))
+        others["kx"] = (dims, k[pick]) if not fixed else (dims[-1:] if pick[1] != 0 else (), k[0][pick[1]])
+    k0 = slab.before.wavenumber(frequency).real
+    if name != "kx_over_k0" and np.all(np.isfinite(k0) & (k0 > 0)):
+        others["kx_over_k0"] = (dims, (k / k0[:, None])[pick])
+    return others
+
+
+def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, background: Fluid = AIR) -> xr.Dataset:
+    """Bloch wavenumber of an infinite stack of a cell: its equifrequency contour.
+
+    Parameters
+    ----------
+    cell : Cell
+    frequency : float or 1-D array, Hz
+    kx, kx_over_k0 : float or 1-D array, real
+        One of: lateral wavenumber [rad/m], or the same over the wavenumber k0 of `background`.
+    background : Fluid
+        Whose wavenumber is k0.
+
+    Returns
+    -------
+    Dataset
+        On (frequency, the one given): complex `kz` [rad/m] and `kz_over_k0`. Im(kz) >= 0: the wave that decays, or
+        where none does carries energy, along +z; the real part is continuous in kx, in the first zone at the kx
+        nearest to 0. -kz belongs to the contour too.
+
+    Raises
+    ------
+    ValueError
+        Also for a cell with a layer of isotropic density 0 and kx other than 0: no finite limit.
+    """
+    checks.instance(cell, Cell, "cell")
+    checks.instance(background, Fluid, "background")
+    f = checks.axis(frequency, "frequency", positive=True)
+    name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
+    flat = np.atleast_1d(f)
+    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat)
+    if np.iscomplexobj(axis):
+        raise ValueError(f"{name}: expected real values, got complex ones")
+    layers = layer_values(cell, flat)
+    if np.any(layers.vanishing) and np.any(k != 0):
+        raise ValueError(
+            "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"
+        )
+    kz = response.bloch_wavenumber(layers, 2 * np.pi * flat[:, None], k.astype(complex))
+    k0 = checks.forward_k0(background, flat, "background")
+    dims, pick = checks.dims(frequency=f, **{name: axis})
+    variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
+    coords = checks.coords(frequency=f, **{name: axis})
+    return datasets.make(
+        {n: (dims, v[pick]) for n, v in variables.items()}, coords, "bloch", flat, cell=cell, background=background
+    )
+
+
+def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip_over_k0: float = 0.5) -> xr.Dataset:
+    """The modes that a slab guides: zeros of its dispersion function, found without a guess.
+
+    The argument principle counts them in the strip k_edge < Re kx < kx_over_k0_max k0, \\|Im kx\\| < strip_over_k0 k0, where
+    k_edge is the larger wavenumber of the two half-spaces; boxes are halved until Newton's method finds each one. -kx is a
+    mode too.
+
+    Parameters
+    ----------
+    slab : Slab
+    frequency : float or 1-D array, Hz
+    kx_over_k0_max, strip_over_k0 : float
+        The strip, over the wavenumber of ``slab.before``.
+
+    Returns
+    -------
+    Dataset
+        On (frequency, mode), by growing Re kx: complex `kx` [rad/m] and `kx_over_k0`; `direction` +1 where energy flows along
+        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`. nan and
+        0 where a frequency has fewer modes than another; `count`, on (frequency), is how many the argument principle
+        counts.
+
+    Raises
+    ------
+    ValueError
+        Wrong arguments, a layer of density 0, or modes that were counted and not found.
+    """
+    checks.instance(slab, Slab, "slab")
+    f = checks.axis(frequency, "frequency", positive=True)
+    highest = as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
+    strip = as_number(strip_over_k0, "strip_over_k0", positive=True)
+    flat = np.atleast_1d(f)
+    found = [_modes_at(slab, float(g), highest, strip) for g in flat]
+    most = max(len(rows) for rows, _ in found)
+    kx = np.full((flat.size, most), complex(np.nan, np.nan))
+    direction, residual = np.zeros(kx.shape, int), np.full(kx.shape, np.nan)
+    for i, (rows, _) in enumerate(found):
+        for j, mode in enumerate(rows):
+            kx[i, j], direction[i, j], residual[i, j] = mode
+    k0 = slab.before.wavenumber(flat).real
+    dims, pick = (("frequency",), ...) if f.ndim else ((), 0)
+    both = (*dims, "mode")
+    variables = {
+        "kx": (both, kx[pick]),
+        "kx_over_k0": (both, (kx / k0[:, None])[pick]),
+        "direction": (both, direction[pick]),
+        "residual": (both, residual[pick]),
+        "count": (dims, np.array([total for _, total in found])[pick]),
+    }
+    coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
+    return datasets.make(
+        variables, coords, "guided_modes", flat, slab=slab, kx_over_k0_max=highest, strip_over_k0=strip
+    )
+
+
+def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[modes.Mode], int]:
+    s = scene(slab, frequency)
+    if any(np.any(values.layers.vanishing) for values in s.segments):
+        raise ValueError("slab: a layer of density 0 blocks every kx other than 0, the slab guides nothing")
+    edge = max(s.branches) * (1 + modes.BESIDE)
+    if highest * s.k0 <= edge:
+        raise ValueError(
+            f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
+        )
+    found, total = modes.find_modes(s, modes.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+    if len(found) != total:
+        raise ValueError(
+            f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(found)} found; "
+            "one may lie on the edge of the strip: change it a little"
+        )
+    return found, total
