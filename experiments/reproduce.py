@@ -8,11 +8,12 @@ import fig2
 import fig3
 import fig4
 import fig5
+import fig5_fem
 import fig6
 from common import arguments, save_all, table
 from tqdm import tqdm
 
-FIGURES = {"fig2": fig2, "fig3": fig3, "fig4": fig4, "fig5": fig5, "fig6": fig6}
+FIGURES = {"fig2": fig2, "fig3": fig3, "fig4": fig4, "fig5": fig5, "fig5_fem": fig5_fem, "fig6": fig6}
 
 
 def main() -> None:

@@ -11,6 +11,7 @@ import fig2
 import fig3
 import fig4
 import fig5
+import fig5_fem
 import fig6
 
 #: Statements of the paper that the exact solution does not confirm.
@@ -20,7 +21,7 @@ EXCEPTIONS = {
 }
 
 
-@pytest.mark.parametrize("figure", [fig2, fig3, fig4, fig5, fig6], ids=lambda m: m.__name__)
+@pytest.mark.parametrize("figure", [fig2, fig3, fig4, fig5, fig5_fem, fig6], ids=lambda m: m.__name__)
 def test_figure(figure, tmp_path):
     """Every panel computes and draws, and every statement comes out as the README's table says."""
     import matplotlib.pyplot as plt
