@@ -174,6 +174,13 @@ class GaussianBeam(_Tilted):
         return middle - half, middle + half
 
 
+def _numbers(values: Any, kind: type, name: str) -> np.ndarray:
+    try:
+        return np.array(values, dtype=kind)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: expected an array of numbers, got {values!r}") from None
+
+
 def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """sum_j weights_j exp(-i k x_j), in blocks of bounded memory."""
     k = np.asarray(k)
@@ -213,7 +220,7 @@ class Profile(_Tilted):
     def __post_init__(self) -> None:
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
-        x, p = np.array(self.x, dtype=float), np.array(self.p, dtype=complex)
+        x, p = _numbers(self.x, float, "x"), _numbers(self.p, complex, "p")
         if x.ndim != 1 or x.size < 2:
             raise ValueError(f"x: expected a 1-D array of at least 2 positions, got shape {x.shape}")
         if p.shape != x.shape:

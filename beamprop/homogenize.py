@@ -36,6 +36,8 @@ class Tabulated:
 
 
 def _layers(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, list[FluidValues]]:
+    if not isinstance(cell, Cell):
+        raise ValueError(f"cell: expected a Cell, got {cell!r}")
     layers = [layer for layer in cell.layers if isinstance(layer, Layer)]
     if len(layers) != len(cell.layers):
         raise ValueError("cell: an effective medium needs a cell of layers only, got a Membrane")
@@ -106,6 +108,8 @@ FUNCTIONS: tuple[type, ...] = (Tabulated, CellMean, LmmdDensity, LmmdJump)
 
 def _simplify(cell: Cell, function: Any) -> Any:
     """A number where the cell does not depend on frequency, the function otherwise."""
+    if not isinstance(cell, Cell):
+        raise ValueError(f"cell: expected a Cell, got {cell!r}")
     dispersive = any(isinstance(layer, Layer) and layer.fluid.dispersive for layer in cell.layers)
     return function if dispersive else complex(function(np.array(1.0)))
 
@@ -151,6 +155,8 @@ def lmmd_emt_slab(slab: Slab, interface: bool = True) -> Slab:
     Slab
         Of the same thickness and half-spaces.
     """
+    if not isinstance(slab, Slab):
+        raise ValueError(f"slab: expected a Slab, got {slab!r}")
     segments = []
     for cell, periods in slab.segments:
         layers: tuple[Layer | Membrane, ...] = (Layer(lmmd_emt(cell), cell.thickness * periods),)

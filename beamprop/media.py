@@ -93,7 +93,7 @@ class Fluid:
     def __post_init__(self) -> None:
         for name in ("density", "bulk_modulus", "density_x"):
             value = getattr(self, name)
-            if value is not None and not callable(value):
+            if not callable(value) and not (name == "density_x" and value is None):
                 object.__setattr__(self, name, _as_complex(value, name))
         numbers = {
             n: v
@@ -204,8 +204,12 @@ class Membrane:
         if not callable(self.areal_density):
             return np.full(frequency.shape, self.areal_density, dtype=complex)
         out = np.asarray(self.areal_density(frequency), dtype=complex)
+        if out.shape != frequency.shape:
+            raise ValueError(
+                f"areal_density: expected a function that returns an array of shape {frequency.shape}, got {out.shape}"
+            )
         _check_property(out, "areal_density", gain_sign=1, active=self.active)
-        return np.broadcast_to(out, frequency.shape)
+        return out
 
 
 @dataclass(frozen=True)
@@ -282,7 +286,12 @@ class Slab:
     @classmethod
     def stack(cls, segments: Iterable[tuple[Cell, int]], before: Fluid = AIR, after: Fluid = AIR) -> Slab:
         """A slab of several (cell, periods) pairs, from the near face on."""
-        pairs = tuple((cell, as_count(periods, "periods")) for cell, periods in segments)
+        try:
+            pairs = tuple((cell, as_count(periods, "periods")) for cell, periods in segments)
+        except TypeError:
+            raise ValueError(f"segments: expected (cell, periods) pairs, got {segments!r}") from None
+        if not all(isinstance(cell, Cell) for cell, _ in pairs):
+            raise ValueError(f"segments: expected (Cell, periods) pairs, got {segments!r}")
         if not pairs:
             raise ValueError("segments: expected at least one (cell, periods) pair, got none")
         slab = object.__new__(cls)
@@ -355,6 +364,8 @@ def lmmd_cell(
     design_frequency = as_number(design_frequency, "design_frequency", positive=True)
     delta_rho = as_number(delta_rho, "delta_rho")
     rho_m = _as_complex(rho_m, "rho_m")
+    if not np.isfinite(rho_m):
+        raise ValueError(f"rho_m: expected a finite number, got {rho_m}")
     if not isinstance(background, Fluid):
         raise ValueError(f"background: expected a Fluid, got {background!r}")
     values = background.at(design_frequency)

@@ -463,7 +463,8 @@ def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> 
 
 
 def _unwrapped(phase: np.ndarray, kx: np.ndarray) -> np.ndarray:
-    """Add whole turns so that the real part is continuous along kx, with no turn at the kx nearest to 0."""
+    """Add whole turns so that the real part is continuous along kx, and within half a turn at the kx nearest to 0."""
+    phase = (phase.real + np.pi) % (2 * np.pi) - np.pi + 1j * phase.imag
     order = np.argsort(kx, axis=-1, kind="stable")
     real = np.take_along_axis(phase.real, order, -1)
     turned = np.unwrap(real, axis=-1)

@@ -46,6 +46,8 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
         draft = scratch / path.name
         write(draft)
         if path.is_dir() and not path.is_symlink():
+            if not (path / "zarr.json").exists() and not (path / ".zgroup").exists() and any(path.iterdir()):
+                raise ValueError(f"path: expected a file or a Zarr store to replace, got a folder {str(path)!r}")
             old = scratch / "replaced"
             os.rename(path, old)
         if draft.is_file():
@@ -140,22 +142,30 @@ def _split(ds: xr.Dataset) -> xr.Dataset:
     for name, v in ds.variables.items():
         if v.dtype.kind == "c":
             attrs = dict(v.attrs)
+            where = {"was_coordinate": 1} if name in ds.coords else {}
             for part, values in (("real", v.values.real), ("imag", v.values.imag)):
                 long_name = f"{attrs.get('long_name', name)}, {part} part"
-                pairs[f"{name}_{part}"] = (v.dims, values, attrs | {"long_name": long_name, "part_of": str(name)})
+                pairs[f"{name}_{part}"] = (
+                    v.dims,
+                    values,
+                    attrs | {"long_name": long_name, "part_of": str(name)} | where,
+                )
     return ds.drop_vars([n for n, v in ds.variables.items() if v.dtype.kind == "c"]).assign(pairs)
 
 
 def _joined(ds: xr.Dataset) -> xr.Dataset:
     """Pairs of real variables as the complex ones they came from; structured {r, i} as complex."""
     whole: dict[str, Any] = {}
+    places: list[str] = []
     for name, v in ds.variables.items():
         if v.dtype.names == ("r", "i"):
             whole[str(name)] = (v.dims, v.values["r"] + 1j * v.values["i"], v.attrs)
         part_of = v.attrs.get("part_of")
         if part_of and str(name) == f"{part_of}_real" and f"{part_of}_imag" in ds.variables:
-            attrs = {k: a for k, a in v.attrs.items() if k != "part_of"}
+            attrs = {k: a for k, a in v.attrs.items() if k not in ("part_of", "was_coordinate")}
+            if v.attrs.get("was_coordinate"):
+                places.append(part_of)
             attrs["long_name"] = attrs.get("long_name", "").removesuffix(", real part")
             whole[part_of] = (v.dims, v.values + 1j * ds.variables[f"{part_of}_imag"].values, attrs)
             ds = ds.drop_vars([name, f"{part_of}_imag"])
-    return ds.assign(whole)
+    return ds.assign(whole).set_coords(places)

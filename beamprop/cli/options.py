@@ -154,7 +154,9 @@ def slab_of(o: dict[str, Any]) -> Slab:
     cell, before = cell_of(o)
     after = before
     if o["after_density"] is not None or o["after_speed"] is not None:
-        after = Fluid.from_speed(o["after_density"] or o["density"], o["after_speed"] or o["sound_speed"])
+        density = o["density"] if o["after_density"] is None else o["after_density"]
+        speed = o["sound_speed"] if o["after_speed"] is None else o["after_speed"]
+        after = Fluid.from_speed(density, speed)
     slab = Slab(cell, o["periods"], before, after)
     if o["medium"].startswith("lmmd"):
         return lmmd_emt_slab(slab, interface=o["medium"] == "lmmd-emt")

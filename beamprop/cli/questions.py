@@ -71,7 +71,7 @@ def field(**o: Any) -> None:
         from ..questions import field
 
         slab = slab_of(o)
-        z = o["z"] or spaced(o["z0"], 1.25 * slab.thickness, 561)
+        z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
         return field(
             slab,
             beam_of(o, o["z0"]),
@@ -92,6 +92,8 @@ def field(**o: Any) -> None:
 
     if o["plot"] and (isinstance(o["frequency"], list) or isinstance(o["angle"], list)):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
+    if o["plot"] and not (isinstance(o["x"], list) and isinstance(o["z"] or [], list)):
+        raise click.UsageError("--plot: expected axes for --x and --z, got one value")
     answer(o, ask, draw, _field_summary)
 
 

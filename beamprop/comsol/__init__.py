@@ -107,7 +107,7 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
 
     triangles = Delaunay(np.stack([ds.x.values, ds.z.values], axis=-1))
     targets = np.stack(np.meshgrid(axes["x"], axes["z"]), axis=-1)
-    out = xr.Dataset(attrs=ds.attrs)
+    out = ds.drop_dims("node")
     for name in ("x", "z"):
         out = out.assign_coords({name: (name, axes[name], ds[name].attrs)})
     for key, variable in ds.data_vars.items():
@@ -117,10 +117,11 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
         on_nodes = variable.transpose("node", *lead).values
         on_grid = np.moveaxis(LinearNDInterpolator(triangles, on_nodes)(targets), (0, 1), (-2, -1))
         out[key] = ((*lead, "z", "x"), on_grid, variable.attrs)
-    return out.assign_coords({n: c for n, c in ds.coords.items() if "node" not in c.dims})
+    return out
 
 
 def axis(values: Any, name: str) -> np.ndarray:
+    """A strictly increasing 1-D axis, or a ValueError that names the argument."""
     values = np.asarray(values, dtype=float)
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or np.any(np.diff(values) <= 0):
         raise ValueError(f"{name}: expected a 1-D array of finite, strictly increasing positions, got {values!r}")

@@ -120,6 +120,7 @@ def _parameter(name: str, text: str) -> tuple[str, Any, str]:
 
 
 def is_number(text: str) -> bool:
+    """Whether a text is a number."""
     try:
         return bool(np.isfinite(as_complex(text.replace(",", "."))))
     except ValueError:

@@ -119,6 +119,7 @@ def length_factor(source: Source, given: str | None) -> float:
 
 
 def plain_unit(unit: str) -> str:
+    """A unit with a plain u for micro."""
     return unit.strip().replace("\N{MICRO SIGN}", "u").replace("\N{GREEK SMALL LETTER MU}", "u")
 
 
@@ -165,6 +166,7 @@ def _refuse_mixed_points(source: Source, lines: list[tuple[int, str]], rows: lis
 
 
 def short(text: str) -> str:
+    """A text as a message shows it."""
     return repr(text if len(text) < 60 else text[:57] + "...")
 
 
@@ -184,6 +186,7 @@ def to_numbers(source: Source, lines: list[int], cells: list[str]) -> np.ndarray
 
 
 def as_complex(text: str) -> complex:
+    """A number as COMSOL writes it: -3.308E-5-0.00388i."""
     text = text.replace(" ", "")
     if text[-1:] in ("i", "j"):
         text = text[:-1].removesuffix("*") + "j"

@@ -91,6 +91,7 @@ def _mesh_orders(slab: Slab, beam: Beam, frequency: float, period: float, order:
 def make_task(
     slab: Any, beam: Any, frequency: Any, period: Any, order: Any, elements_x: Any, method: Any, layer_rows: Any
 ) -> Task:
+    """Check the arguments and choose the mesh."""
     frequency, period, order = _check(slab, beam, frequency, period, order, method)
     usual, highest = _mesh_orders(slab, beam, frequency, period, order)
     elements_x = usual if elements_x is None else as_count(elements_x, "elements_x")
@@ -100,6 +101,7 @@ def make_task(
 
 
 def predict(task: Task) -> Plan:
+    """What a task takes, from its size alone."""
     n, rows = task.order * task.elements_x, task.rows
     memory, seconds = solvers.COSTS[task.method](task.segments, rows, n, task.order)
     elements_z = int(np.count_nonzero(np.array([row.thickness for row in rows.kinds])[rows.kind]))

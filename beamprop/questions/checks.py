@@ -42,7 +42,9 @@ def angles(angle: Any, beam: Beam) -> np.ndarray:
     """The asked angles of a beam [degree], its own by default."""
     values = axis(beam.angle if angle is None else angle, "angle")
     if np.any(np.abs(values) >= 90):
-        raise ValueError(f"angle: expected degrees from the normal, between -90 and 90, got {values.flat[0]}")
+        raise ValueError(
+            f"angle: expected degrees from the normal, between -90 and 90, got {values[np.abs(values) >= 90].flat[0]}"
+        )
     return values
 
 
