@@ -74,7 +74,7 @@ def beam_measures(
     Warns
     -----
     RuntimeWarning
-        A level is not reached inside the window (nan), or the half level is met more than twice.
+        A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice.
     """
     checks.instance(slab, Slab, "slab")
     checks.instance(beam, Beam, "beam")
@@ -98,7 +98,11 @@ def beam_measures(
 def _announce(table: dict[str, np.ndarray]) -> None:
     missing = [name for name, values in table.items() if np.any(np.isnan(values))]
     if missing:
-        warnings.warn(f"level not reached inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=3)
+        warnings.warn(
+            f"no beam on a side, or a level not reached inside the window: nan in {', '.join(missing)}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
     most = int(table["crossings"].max())
     if most > 2:
         warnings.warn(
@@ -138,6 +142,8 @@ def _transmitted(s: Scene, z0: float) -> Face:
 
 
 def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float) -> Beamlet:
+    if not _any_beam(s, beam, face):
+        return NO_BEAM
     plane = np.array([s.thickness])
     half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
     for _ in range(7):
@@ -167,6 +173,17 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
         mean,
         crossings,
     )
+
+
+#: What is said of a side without a beam.
+NO_BEAM = Beamlet(*[math.nan] * 5, 0.0, 0.0, math.nan, math.nan, 0)
+
+
+def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
+    """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
+    k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
+    strength = np.abs(beam.spectrum(k, s.k0))
+    return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
 
 
 def _between(s: Scene, beam: Beam, line: spectral.Line, h: np.ndarray) -> widths.Evaluate:

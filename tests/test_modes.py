@@ -1,0 +1,184 @@
+"""Guided modes against closed forms and against the field; backward modes; beam measures."""
+
+import numpy as np
+import oracles
+import pytest
+
+import beamprop as bp
+
+F = 2500.0
+K0 = 2 * np.pi * F / 343
+BULK = bp.AIR.bulk_modulus
+
+
+def thin(density, thickness, loss=0.0):
+    """A uniform slab of relative density, with a relative loss of density and modulus."""
+    fluid = bp.Fluid(1.25 * (density + 1j * loss * abs(density)), BULK / (1 + 1j * loss))
+    return bp.Slab.uniform(fluid, thickness)
+
+
+@pytest.mark.parametrize("density", [5.0, 3.0, 12.0])
+@pytest.mark.parametrize("thickness", [0.02, 0.1, 0.3])
+def test_modes_of_a_dense_slab_are_the_textbook_ones(density, thickness):
+    """Even and odd modes: tan(k d/2) = rho kappa/k, -cot(k d/2) = rho kappa/k, counted by their phase."""
+    ds = bp.guided_modes(bp.Slab.uniform(bp.Fluid(1.25 * density, BULK), thickness), F, kx_over_k0_max=5)
+    kx = ds.kx.values
+    assert np.all(np.abs(kx.imag) < 1e-12 * kx.real)
+    assert np.all(ds.direction == 1)
+    kz, kappa = np.sqrt(density * K0**2 - kx.real**2), np.sqrt(kx.real**2 - K0**2)
+    # kz d = m pi + 2 atan(rho kappa / kz), m = 0, 1, ... downwards in kx
+    order = (kz * thickness - 2 * np.arctan(density * kappa / kz)) / np.pi
+    np.testing.assert_allclose(order[::-1], np.arange(kx.size), atol=1e-7)
+    assert kx.size == 1 + int(np.sqrt(density - 1) * K0 * thickness / np.pi)
+    assert ds["count"] == kx.size
+
+
+def test_twenty_lossless_periods_guide_a_mode():
+    """Where |t| on the real axis has its pole."""
+    slab = bp.Slab(bp.lmmd_cell(0.05, 0.0), 20)
+    (mode,) = bp.guided_modes(slab, F).kx_over_k0.values
+    assert mode == pytest.approx(1.598146, abs=1e-6)
+    near = bp.scattering(slab, F, kx_over_k0=np.array([mode.real - 1e-5, mode.real, mode.real + 1e-5])).t.values
+    assert abs(near[1]) > 1e3 * abs(near[0])
+    assert near[0].real * near[2].real < 0 or near[0].imag * near[2].imag < 0
+
+
+def test_loss_tells_forward_from_backward():
+    """A thin layer of relative density -0.6 guides a forward and a backward mode; loss moves them up and down."""
+    lossless = bp.guided_modes(thin(-0.6, 0.01), F)
+    assert lossless.direction.values.tolist() == [1, -1]
+    lossy = bp.guided_modes(thin(-0.6, 0.01, 1e-3), F)
+    assert lossy.kx.values[0].imag > 0 > lossy.kx.values[1].imag
+    assert lossy.direction.values.tolist() == [1, -1]
+    np.testing.assert_allclose(lossy.kx.values.real, lossless.kx.values.real, rtol=1e-3)
+
+
+def test_frequencies_are_padded():
+    """Fewer modes at one frequency than at another: nan, direction 0."""
+    slab = bp.Slab.uniform(bp.Fluid(5 * 1.25, BULK), 0.1)
+    ds = bp.guided_modes(slab, [500.0, 4000.0])
+    assert ds["count"].values[0] < ds["count"].values[1] == ds.sizes["mode"]
+    missing = np.isnan(ds.kx.values[0].real)
+    assert missing.sum() == ds.sizes["mode"] - ds["count"].values[0]
+    assert np.all(ds.direction.values[0][missing] == 0)
+
+
+@pytest.mark.parametrize(("density", "thickness"), [(-0.6, 0.01), (-0.3, 0.005)])
+def test_field_beside_a_backward_mode(density, thickness):
+    """Linear convergence of small losses to the lossless field; one lossy field against a path beside the real axis."""
+    x, z = np.linspace(-0.6, 0.8, 29), np.array([-0.05, 0.0, thickness / 2, thickness, 0.03])
+    beam = bp.GaussianBeam(0.02, angle=30, z0=-0.05)
+    limit = bp.field(thin(density, thickness), beam, F, x, z).p.values
+    largest = np.abs(limit).max()
+    apart = [
+        np.abs(bp.field(thin(density, thickness, loss), beam, F, x, z).p.values - limit).max() / largest
+        for loss in (1e-4, 1e-5, 1e-6)
+    ]
+    assert apart[0] > 1e-5  # the modes matter
+    assert apart[0] / apart[1] == pytest.approx(10, rel=0.02)
+    assert apart[1] / apart[2] == pytest.approx(10, rel=0.02)
+    lossy = thin(density, thickness, 1e-2)
+    a = 0.02 / (2 * np.sqrt(np.log(2)))
+    layers = [(layer.fluid.density, layer.fluid.bulk_modulus, layer.thickness) for layer in lossy.cell.layers]
+    air = (1.25, BULK)
+    want = oracles.open_field(
+        layers,
+        1,
+        air,
+        air,
+        F,
+        lambda k: a * np.sqrt(np.pi) * np.exp(-((a * (k - K0 / 2) / 2) ** 2)),
+        -0.05,
+        x,
+        z,
+        bend=0.02,
+        band=900,
+        count=400001,
+    )
+    got = bp.field(lossy, beam, F, x, z).p.values
+    assert np.abs(got - want).max() < 2e-8 * largest
+
+
+def test_wrong_side_would_be_seen():
+    """The circles are what puts a backward mode right: without them the field is far off."""
+    from beamprop import modes, propagate
+    from beamprop.scene import scene
+
+    s = scene(thin(-0.6, 0.01), F)
+    assert len(modes.between(s, 0.2 * K0, 5 * K0).wrong) == 1
+    beam = bp.GaussianBeam(0.02)
+    x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
+    transfer = propagate.through(s, 0.0)
+    with_them, without = (
+        propagate.point_sum(s, beam, line, transfer(line.k, z), x)
+        for line in (propagate.choose_line(s, [beam], transfer, x, z, 1e-8, guided).line for guided in (True, False))
+    )
+    assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"kx_over_k0_max": 0.5},
+        {"kx_over_k0_max": np.nan},
+        {"strip_over_k0": 0},
+        {"frequency": -1.0},
+        {"slab": 3},
+    ],
+)
+def test_wrong_arguments_of_guided_modes(wrong):
+    """ValueErrors name the argument."""
+    arguments = {"slab": thin(5.0, 0.1), "frequency": F} | wrong
+    with pytest.raises(ValueError, match=next(iter(wrong))):
+        bp.guided_modes(**arguments)
+
+
+# --- beam measures ----------------------------------------------------------------------------------------
+
+
+def test_a_wide_gaussian_in_air():
+    """2 a, 2/(k a), all of the power, no shift."""
+    beam = bp.GaussianBeam(0.5, angle=20.0)
+    a = beam.radius
+    with pytest.warns(RuntimeWarning, match="no beam on a side"):
+        ds = bp.beam_measures(bp.Slab.uniform(bp.AIR, 0.05), beam, 4000.0).sel(side="transmitted")
+    k = 2 * np.pi * 4000 / 343
+    assert ds.fwhm == pytest.approx(0.5, rel=2e-3)
+    assert ds.width_1e2 == pytest.approx(2 * a, rel=2e-3)
+    assert ds.width_second_moment == pytest.approx(2 * a, rel=3e-3)
+    assert ds.power == pytest.approx(1.0, abs=1e-9)
+    assert ds.far_angle == pytest.approx(20.0, abs=0.1)
+    assert ds.divergence == pytest.approx(np.degrees(2 / (k * a)) / np.cos(np.radians(20)), rel=5e-3)
+    assert abs(ds.lateral_shift) < 2e-3 * 0.5
+    assert ds.crossings == 2
+
+
+def test_power_is_conserved_without_loss():
+    """Reflected and transmitted shares add up, with water behind too."""
+    for after in (bp.AIR, bp.Fluid.from_speed(400.0, 500.0)):
+        slab = bp.Slab(bp.Cell([bp.Layer(bp.Fluid(3.0, BULK), 0.03), bp.Layer(bp.Fluid(0.4, BULK), 0.05)]), after=after)
+        ds = bp.beam_measures(slab, bp.GaussianBeam(0.4), F)
+        assert float(ds.power.sum()) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_goos_haenchen_shift_is_the_phase_slope():
+    """Total reflection at 60 degrees of a wide beam: shift = -d(arg r)/dkx (Artmann)."""
+    fast = bp.Fluid.from_speed(1.0, 600.0)
+    slab = bp.Slab.uniform(fast, 0.5, after=fast)
+    k = K0 * np.sin(np.radians(60))
+    r = bp.scattering(slab, F, kx=np.array([k - 1e-3, k, k + 1e-3])).r.values
+    assert abs(r[1]) == pytest.approx(1.0, abs=1e-9)
+    artmann = -np.imag((r[2] - r[0]) / (2e-3 * r[1]))
+    with pytest.warns(RuntimeWarning, match="far_angle"):  # nothing radiates behind
+        ds = bp.beam_measures(slab, bp.GaussianBeam(8.0, angle=60.0), F).sel(side="reflected")
+    assert ds.lateral_shift == pytest.approx(artmann, rel=2e-3)
+
+
+def test_several_crossings_are_said():
+    """Two slits: the half level is met four times."""
+    slab = bp.Slab.uniform(bp.Fluid.from_speed(1.5, 343.0), 0.01)
+    with pytest.warns(RuntimeWarning, match="half level is met"):
+        x = np.linspace(-0.3, 0.3, 601)
+        two = np.exp(-(((x - 0.12) / 0.03) ** 2)) + np.exp(-(((x + 0.12) / 0.03) ** 2))
+        ds = bp.beam_measures(slab, bp.Profile(x, two), 8000.0)
+    assert ds.crossings.sel(side="transmitted") == 4
