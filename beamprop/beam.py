@@ -7,6 +7,7 @@ Every source is a pressure on its launch plane z = z0 <= 0 and knows four things
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass, replace
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
@@ -241,6 +242,58 @@ class Profile(_Tilted):
             array.setflags(write=False)
             object.__setattr__(self, key, array)
 
+    @classmethod
+    def from_file(
+        cls, path: str | os.PathLike[str], z0: float = 0.0, angle: float = 0.0, conjugate: bool = False
+    ) -> Profile:
+        """A measured profile from a text file of two or three columns: x [m], Re p, Im p [Pa].
+
+        Columns are parted by blanks, commas or semicolons; lines that begin with # or % are comments.
+
+        Parameters
+        ----------
+        path : path
+        z0, angle
+            As in `Profile`.
+        conjugate : bool
+            For files in the convention exp(+i w t).
+
+        Raises
+        ------
+        ValueError
+            Names the file, and the line that is no row of numbers.
+        """
+        rows: list[list[float]] = []
+        with open(path, encoding="utf-8-sig") as lines:
+            for number, line in enumerate(lines, 1):
+                cells = line.replace(",", " ").replace(";", " ").split()
+                if not cells or cells[0][0] in "#%":
+                    continue
+                try:
+                    row = [float(cell) for cell in cells]
+                except ValueError:
+                    row = []
+                if len(row) not in (2, 3) or (rows and len(row) != len(rows[0])):
+                    raise ValueError(
+                        f"{path}, line {number}: expected 2 or 3 numbers (x, Re p, Im p), got {line.strip()!r}"
+                    )
+                rows.append(row)
+        if len(rows) < 2:
+            raise ValueError(f"{path}: expected at least 2 rows of x, Re p, Im p, got {len(rows)}")
+        table = np.array(rows)
+        p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
+        order = np.argsort(table[:, 0], kind="stable")
+        return cls(table[order, 0], (p.conj() if conjugate else p)[order], z0, angle)
+
+    @classmethod
+    def from_data(cls, profile: Any, z0: float = 0.0, angle: float = 0.0) -> Profile:
+        """One line of a dataset: a DataArray of complex pressure along x (``ds.p.sel(z=0, method="nearest")``, say)."""
+        if getattr(profile, "dims", None) != ("x",):
+            raise ValueError(
+                f"profile: expected a DataArray along x, got {getattr(profile, 'dims', type(profile).__name__)}"
+            )
+        return cls(profile["x"].values, profile.values, z0, angle)
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Profile) and self._key() == other._key()
 
@@ -248,7 +301,7 @@ class Profile(_Tilted):
         return hash(self._key())
 
     def _key(self) -> tuple[bytes, bytes, float, float]:
-        return self.x.tobytes(), self.p.tobytes(), self.z0, self.angle
+        return (self.x + 0.0).tobytes(), (self.p + 0.0).tobytes(), self.z0, self.angle  # -0.0 is 0.0
 
     @property
     def spacing(self) -> float:

@@ -141,7 +141,8 @@ def test_a_wide_gaussian_in_air():
     beam = bp.GaussianBeam(0.5, angle=20.0)
     a = beam.radius
     with pytest.warns(RuntimeWarning, match="no beam on a side"):
-        ds = bp.beam_measures(bp.Slab.uniform(bp.AIR, 0.05), beam, 4000.0).sel(side="transmitted")
+        both = bp.beam_measures(bp.Slab.uniform(bp.AIR, 0.05), beam, 4000.0)
+    ds = both.sel(side="transmitted")
     k = 2 * np.pi * 4000 / 343
     assert ds.fwhm == pytest.approx(0.5, rel=2e-3)
     assert ds.width_1e2 == pytest.approx(2 * a, rel=2e-3)
@@ -170,15 +171,52 @@ def test_goos_haenchen_shift_is_the_phase_slope():
     assert abs(r[1]) == pytest.approx(1.0, abs=1e-9)
     artmann = -np.imag((r[2] - r[0]) / (2e-3 * r[1]))
     with pytest.warns(RuntimeWarning, match="far_angle"):  # nothing radiates behind
-        ds = bp.beam_measures(slab, bp.GaussianBeam(8.0, angle=60.0), F).sel(side="reflected")
+        both = bp.beam_measures(slab, bp.GaussianBeam(8.0, angle=60.0), F)
+    ds = both.sel(side="reflected")
     assert ds.lateral_shift == pytest.approx(artmann, rel=2e-3)
 
 
 def test_several_crossings_are_said():
     """Two slits: the half level is met four times."""
     slab = bp.Slab.uniform(bp.Fluid.from_speed(1.5, 343.0), 0.01)
+    x = np.linspace(-0.3, 0.3, 601)
+    two = np.exp(-(((x - 0.12) / 0.03) ** 2)) + np.exp(-(((x + 0.12) / 0.03) ** 2))
     with pytest.warns(RuntimeWarning, match="half level is met"):
-        x = np.linspace(-0.3, 0.3, 601)
-        two = np.exp(-(((x - 0.12) / 0.03) ** 2)) + np.exp(-(((x + 0.12) / 0.03) ** 2))
         ds = bp.beam_measures(slab, bp.Profile(x, two), 8000.0)
     assert ds.crossings.sel(side="transmitted") == 4
+
+
+# --- measured profiles ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("separator", [" ", ", ", ";\t"])
+def test_a_profile_from_a_file(tmp_path, separator):
+    """Rows in any order, comments, both conventions; the field is that of the samples."""
+    x = np.linspace(-0.2, 0.2, 161)
+    p = np.exp(-((x / 0.05) ** 2) + 3j * x)
+    rows = [separator.join(f"{v:.17g}" for v in row) for row in zip(x, p.real, -p.imag, strict=True)]
+    path = tmp_path / "measured.txt"
+    path.write_text("\n".join(["% x Re Im", *rows[::-1], ""]))
+    beam = bp.Profile.from_file(path, z0=-0.02, conjugate=True)
+    assert beam == bp.Profile(x, p, -0.02)
+
+
+def test_a_profile_from_a_field():
+    """What leaves one slab is launched into the next: equal to the two in a row where nothing comes back."""
+    air = bp.Slab.uniform(bp.AIR, 0.1)
+    x = np.linspace(-0.6, 0.6, 481)
+    first = bp.field(air, bp.GaussianBeam(0.1), F, x, 0.1)
+    again = bp.field(air, bp.Profile.from_data(first.p), F, [0.0, 0.05], 0.1)
+    whole = bp.field(air, bp.GaussianBeam(0.1), F, [0.0, 0.05], 0.2)
+    np.testing.assert_allclose(again.p, whole.p, atol=2e-3)  # the window of the samples cuts the tails
+
+
+@pytest.mark.parametrize(
+    ("text", "said"), [("0 1 2\n1 2\n", "line 2"), ("0 1\nabc 2\n", "line 2"), ("% only\n", "2 rows")]
+)
+def test_files_that_are_no_profile(tmp_path, text, said):
+    """The file and the line are named."""
+    path = tmp_path / "p.txt"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=said):
+        bp.Profile.from_file(path)

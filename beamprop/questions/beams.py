@@ -254,7 +254,7 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
     -------
     DataArray
         In the units of `dim`, located on a cubic spline of the samples; nan with a warning where the half level is not
-        reached inside the window.
+        reached inside the window, and a warning where it is met more than twice.
     """
     if not isinstance(profile, xr.DataArray):
         raise ValueError(f"profile: expected a DataArray, got {type(profile).__name__}")
@@ -269,11 +269,22 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
     if not np.all(np.isfinite(ordered)):
         raise ValueError("profile: expected finite values, got NaN or infinity")
 
+    level, crossings = widths.HALF_LEVEL[width_of], [0]
+
     def one(p: np.ndarray) -> float:
-        return widths.full_width(x, p, widths.HALF_LEVEL[width_of]).width
+        found = widths.full_width(x, p, level)
+        crossings.append(int(np.count_nonzero(np.diff(np.abs(p) > level * found.peak))))
+        return found.width
 
     out = xr.apply_ufunc(one, ordered, input_core_dims=[[dim]], vectorize=True, output_dtypes=[float])
     if np.any(np.isnan(out)):
         warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)
+    if max(crossings) > 2:
+        warnings.warn(
+            f"fwhm: the half level is met up to {max(crossings)} times; the width is between the two places nearest to "
+            "the peak",
+            RuntimeWarning,
+            stacklevel=2,
+        )
     out.attrs = {"units": profile[dim].attrs.get("units", "m"), "long_name": "full width at half maximum"}
     return out.rename("fwhm")

@@ -176,7 +176,8 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
 
 
 #: What is said of a side without a beam.
-NO_BEAM = Beamlet(*[math.nan] * 5, 0.0, 0.0, math.nan, math.nan, 0)
+_NAN = math.nan
+NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0)
 
 
 def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
