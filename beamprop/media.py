@@ -118,6 +118,8 @@ class Fluid:
     def from_speed(cls, density: complex, sound_speed: complex, *, active: bool = False) -> Fluid:
         """A fluid by its density [kg/m3] and speed of sound [m/s]: bulk modulus ``density * sound_speed**2``."""
         rho, c = _as_complex(density, "density"), _as_complex(sound_speed, "sound_speed")
+        if not (np.isfinite(rho) and rho != 0):
+            raise ValueError(f"density: expected a finite number other than zero beside a speed, got {density!r}")
         if not (np.isfinite(c) and c != 0):
             raise ValueError(f"sound_speed: expected a finite number other than zero, got {sound_speed!r}")
         return cls(rho, rho * c * c, active=active)

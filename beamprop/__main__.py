@@ -1,0 +1,5 @@
+"""``python -m beamprop``."""
+
+from .cli import main
+
+main(prog_name="beamprop")

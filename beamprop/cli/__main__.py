@@ -1,0 +1,5 @@
+"""``python -m beamprop.cli``."""
+
+from . import main
+
+main(prog_name="beamprop")

@@ -1,0 +1,278 @@
+"""The walls: data flows one way, each concept has one home, and what is public is documented."""
+
+import ast
+import importlib
+import re
+from pathlib import Path
+
+import pytest
+
+import beamprop as bp
+
+ROOT = Path(bp.__file__).parent
+CHECKOUT = Path(__file__).parent.parent
+
+#: A module imports only from those before it. A new module takes its place here, and in the README's architecture.
+ORDER = [
+    "_version",
+    "conventions",
+    "media",
+    "homogenize",
+    "response",
+    "beam",
+    "widths",
+    "spectral",
+    "scene",
+    "modes",
+    "propagate",
+    "sections",
+    "datasets",
+    "fem",
+    "questions",
+    "comsol",
+    "comparison",
+    "storage",
+    "sweep",
+    "_plot_comparison",
+    "plot",
+    "cli",
+    "__main__",
+]
+
+#: Those that see less than all that stands before them.
+ONLY = {
+    "conventions": set(),
+    "widths": set(),
+    "spectral": set(),
+    "media": {"conventions"},
+    "homogenize": {"conventions", "media"},
+    "response": {"conventions", "media"},
+    "beam": {"conventions", "media"},
+    "fem": {"conventions", "media", "beam", "datasets"},
+    "comsol": {"conventions", "datasets"},
+    "storage": {"conventions", "datasets"},
+    "_plot_comparison": {"conventions"},
+    "plot": {"conventions", "_plot_comparison"},
+}
+
+
+def module_of(path):
+    """The name in ORDER of a file: the folder's, for a module that has become a folder."""
+    parts = path.relative_to(ROOT).parts
+    return parts[0].removesuffix(".py")
+
+
+FILES = {path: module_of(path) for path in sorted(ROOT.rglob("*.py"))}
+MODULES = sorted(set(FILES.values()) - {"__init__"})
+
+
+def tree(path):
+    return ast.parse(path.read_text(encoding="utf-8"), str(path))
+
+
+def own_imports(path):
+    """Names of the package's modules that a file imports, anywhere in it."""
+    depth = len(path.relative_to(ROOT).parts) - 1
+    found = set()
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.ImportFrom) and node.level > depth:
+            found |= {node.module.split(".")[0]} if node.module else {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("beamprop"):
+            found |= {*node.module.split(".")[1:2]} or {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {
+                name for alias in node.names if alias.name.startswith("beamprop") for name in alias.name.split(".")[1:2]
+            }
+    return found - {FILES[path]}
+
+
+def other_imports(path):
+    """Full names of all that a file imports from other packages."""
+    found = set()
+    for node in ast.walk(tree(path)):
+        if isinstance(node, ast.ImportFrom) and not node.level:
+            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+    return found
+
+
+def files_of(module):
+    return [path for path, name in FILES.items() if name == module]
+
+
+# --- one way ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_data_flows_one_way(module):
+    """A module imports only from those that stand before it in ORDER, function-level imports included."""
+    assert module in ORDER, f"{module} has no place in ORDER"
+    before = set(ORDER[: ORDER.index(module)])
+    for path in files_of(module):
+        allowed = ONLY.get(module, before)
+        assert allowed <= before
+        assert own_imports(path) - {"_version"} <= allowed, path.name
+
+
+def test_the_checker_sees_imports():
+    """It finds relative and function-level imports in files and folders (or the tests here would hold by themselves)."""
+    assert {"datasets", "propagate", "response", "beam", "media"} <= set().union(
+        *map(own_imports, files_of("questions"))
+    )
+    assert {"homogenize", "storage", "questions", "plot"} <= set().union(*map(own_imports, files_of("cli")))
+    assert "pyfftw" in set().union(*map(other_imports, files_of("spectral")))
+    assert len(FILES) >= 18
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_one_user_of_fft_libraries(module):
+    """spectral alone imports pyfftw or scipy.fft."""
+    for path in files_of(module):
+        fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
+        assert not fft or module == "spectral"
+
+
+def makes_datasets(path):
+    """Lines on which a file calls xr.Dataset(...) or Dataset(...)."""
+    calls = (node for node in ast.walk(tree(path)) if isinstance(node, ast.Call))
+    return [
+        node.lineno
+        for node in calls
+        if (isinstance(node.func, ast.Attribute) and node.func.attr == "Dataset")
+        or (isinstance(node.func, ast.Name) and node.func.id == "Dataset")
+    ]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_one_maker_of_datasets(module):
+    """datasets alone makes them, so that every one has units, long names and provenance."""
+    for path in files_of(module):
+        assert not makes_datasets(path) or module == "datasets", path
+
+
+def test_one_branch_of_the_square_root():
+    """outgoing_kz is defined in conventions, and nothing else is called so."""
+    homes = [
+        FILES[path]
+        for path in FILES
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.FunctionDef) and node.name in ("outgoing_kz", "branch_wavenumber")
+    ]
+    assert homes == ["conventions", "conventions"]
+
+
+@pytest.mark.parametrize(
+    "module", ["conventions", "media", "homogenize", "response", "beam", "widths", "spectral", "propagate"]
+)
+def test_kernels_know_arrays_only(module):
+    """Below the questions nothing imports xarray, matplotlib, click or tqdm."""
+    for path in files_of(module):
+        assert not {name.split(".")[0] for name in other_imports(path)} & {
+            "xarray",
+            "matplotlib",
+            "click",
+            "tqdm",
+            "h5netcdf",
+        }
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_nothing_prints_and_nothing_is_global(path):
+    """No print in the package (the command uses click.echo), no `global`, no star import, no bare except."""
+    for node in ast.walk(tree(path)):
+        assert not (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "print"), (
+            node.lineno
+        )
+        assert not isinstance(node, ast.Global), node.lineno
+        assert not (isinstance(node, ast.ImportFrom) and node.names[0].name == "*"), node.lineno
+        assert not (isinstance(node, ast.ExceptHandler) and node.type is None), node.lineno
+
+
+# --- what is public ---------------------------------------------------------------------------------------
+
+
+def undocumented(path):
+    """Public functions and classes of a file, at its top level, that have no docstring."""
+    return [
+        node.name
+        for node in tree(path).body
+        if isinstance(node, ast.FunctionDef | ast.ClassDef)
+        and not node.name.startswith("_")
+        and not ast.get_docstring(node)
+    ]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_docstrings(path):
+    """Every file, public function and public class says what it is for."""
+    assert undocumented(path) == []
+    assert ast.get_docstring(tree(path)) or path.name == "_version.py"
+
+
+@pytest.mark.parametrize("name", bp.__all__)
+def test_public_names_exist_and_are_documented(name):
+    """Each name of __all__ can be had; functions, classes and their public members have docstrings."""
+    value = getattr(bp, name)
+    if isinstance(value, type) or (callable(value) and hasattr(value, "__name__")):
+        assert value.__doc__
+        assert value.__module__.startswith("beamprop")
+    if isinstance(value, type) and not issubclass(value, Warning):
+        members = [
+            m
+            for m, v in vars(value).items()
+            if not m.startswith("_") and (callable(v) or isinstance(v, property | classmethod))
+        ]
+        assert [m for m in members if not getattr(value, m).__doc__] == []
+
+
+def test_public_names_have_one_home():
+    """What type checkers see is what users get: the names imported under TYPE_CHECKING are those of __all__."""
+    checked = {
+        alias.name: node.module
+        for node in ast.walk(tree(ROOT / "__init__.py"))
+        if isinstance(node, ast.ImportFrom) and node.level
+        for alias in node.names
+    }
+    assert set(checked) == set(bp.__all__)
+    for name, home in checked.items():
+        if home and not name.startswith("__"):
+            assert getattr(importlib.import_module(f"beamprop.{home}"), name) is getattr(bp, name)
+
+
+# --- what ships -------------------------------------------------------------------------------------------
+
+#: A path of somebody's machine, or one outside the checkout.
+PRIVATE = re.compile(r"(?<![\w$.})/])/(home|Users|root|tmp|work|mnt)/[\w.]|(?<![\w/.])[s]hared/\w|C:\\\\Users")
+
+
+def shipped():
+    kinds = ("*.py", "*.md", "*.toml", "*.cfg", "*.yml", "*.sh")
+    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments")]
+    inner = [path for top in tops for kind in kinds for path in sorted(top.rglob(kind))]
+    return inner + [
+        path
+        for path in (CHECKOUT / "README.md", CHECKOUT / "pyproject.toml", CHECKOUT / ".ci" / "run")
+        if path.exists()
+    ]
+
+
+def test_no_file_names_a_private_path():
+    """Nothing that ships points into the folders of the machine it was written on."""
+    files = shipped()
+    assert len(files) > 20
+    found = [
+        f"{path.relative_to(CHECKOUT)}: {match.group()}"
+        for path in files
+        if (match := PRIVATE.search(path.read_text(encoding="utf-8")))
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("folder", ["home", "Users", "root", "tmp", "work"])
+def test_private_paths_are_recognised(folder):
+    """The pattern finds what it is for, and leaves URLs, shell variables and other words alone."""
+    for text in (f"/{folder}/ann/x", f"open('/{folder}/a.nc')", f"in /{folder}/a"):
+        assert PRIVATE.search(text)
+    for text in (f"https://example.org/{folder}/x", f"${folder}/x", f"docs/{folder}/y", f"/{folder}s/x"):
+        assert not PRIVATE.search(text)

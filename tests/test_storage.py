@@ -1,0 +1,340 @@
+"""Files: what is written is read back the same, by us and by others, and nothing is ever half-written."""
+
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+import beamprop as bp
+
+F = 2500.0
+SLAB = bp.Slab(bp.lmmd_cell(), 20)
+BEAM = bp.GaussianBeam(0.096, z0=-0.05)
+X = np.linspace(-0.4, 0.4, 11)
+
+DATASETS = {
+    "field": lambda: bp.field(SLAB, BEAM, [2400.0, F], X, [0.0, 0.1, 0.2], angle=[0.0, 30.0]),
+    "periodic": lambda: bp.field(SLAB, BEAM, F, (np.arange(60) - 30) * 0.02, 0.1, boundary="periodic"),
+    "scalar field": lambda: bp.field(SLAB, BEAM, F, 0.0, 0.1),
+    "scattering": lambda: bp.scattering(SLAB, [F, 2600.0], kx_over_k0=[0.0, 0.5, 1.0, 2.0]),
+    "one angle": lambda: bp.scattering(SLAB, F, angle=12.0),
+    "bloch": lambda: bp.bloch(SLAB.cell, [F, 2600.0], kx=[0.0, 3.0]),
+    "widths": lambda: bp.beam_width(SLAB, BEAM, [2400.0, F]),
+    "scalar widths": lambda: bp.beam_width(SLAB, BEAM, F),
+}
+
+
+@pytest.fixture(scope="module")
+def datasets():
+    return {name: make() for name, make in DATASETS.items()}
+
+
+@pytest.fixture
+def small():
+    return bp.scattering(SLAB, F, kx_over_k0=[0.0, 0.5])
+
+
+def names(folder):
+    return sorted(os.listdir(folder))
+
+
+# --- round trips ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", DATASETS)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"path": "a.nc"},
+        {"path": "a.zarr"},
+        {"path": "a.nc", "split_complex": True},
+        {"path": "a.zarr", "split_complex": True},
+        {"path": "a.nc", "compression": 5},
+    ],
+    ids=["nc", "zarr", "nc split", "zarr split", "nc compressed"],
+)
+def test_round_trip(tmp_path, datasets, name, options):
+    """load gives back what save was given: values to the last bit, dims, coordinates and attributes."""
+    ds = datasets[name]
+    path = tmp_path / options["path"]
+    bp.save(ds, path, **{k: v for k, v in options.items() if k != "path"})
+    again = bp.load(path)
+    xr.testing.assert_identical(again, ds)
+    assert {n: v.dtype for n, v in again.variables.items()} == {n: v.dtype for n, v in ds.variables.items()}
+    assert names(tmp_path) == [path.name]
+
+
+@pytest.mark.parametrize("path", ["a.nc", "a.zarr"])
+@pytest.mark.parametrize("split", [False, True])
+def test_complex_coordinates_round_trip(tmp_path, path, split):
+    """A line of complex kx is a complex coordinate, and stays the index of its dimension."""
+    ds = bp.scattering(SLAB, F, kx=np.linspace(0, 50, 5) - 2j)
+    bp.save(ds, tmp_path / path, split_complex=split)
+    xr.testing.assert_identical(bp.load(tmp_path / path), ds)
+
+
+@pytest.mark.parametrize("path", ["a.nc", "a.zarr"])
+def test_the_structure_comes_back_from_the_file(tmp_path, path):
+    """Slab, beam and settings are rebuilt from a loaded file."""
+    slab = bp.lmmd_emt_slab(bp.Slab(bp.lmmd_cell(), 3, after=bp.Fluid(2 + 1j, 1e5, np.inf)))
+    bp.save(bp.field(slab, BEAM, F, X, 0.05, rtol=1e-6), tmp_path / path)
+    record = bp.provenance(bp.load(tmp_path / path))
+    assert (record["slab"], record["beam"], record["rtol"]) == (slab, BEAM, 1e-6)
+
+
+def test_what_was_loaded_can_be_saved_again(tmp_path, datasets):
+    """No encoding rides along that another format or a second write would stumble over."""
+    for one, two in (("a.nc", "b.zarr"), ("c.zarr", "d.nc"), ("e.nc", "f.nc")):
+        bp.save(datasets["field"], tmp_path / one, compression=4 if one == "a.nc" else 0)
+        bp.save(bp.load(tmp_path / one), tmp_path / two)
+        xr.testing.assert_identical(bp.load(tmp_path / two), datasets["field"])
+
+
+def test_saving_leaves_the_dataset_alone(tmp_path, datasets):
+    """The caller's dataset is not touched."""
+    ds = datasets["field"]
+    before = ds.copy(deep=True)
+    bp.save(ds, tmp_path / "a.nc", split_complex=True)
+    xr.testing.assert_identical(ds, before)
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_attributes_are_what_every_format_takes(datasets, name):
+    """Strings and finite numbers only: no None, bool, dict or list; the provenance is JSON without NaN."""
+    ds = datasets[name]
+    for attrs in (ds.attrs, *(v.attrs for v in ds.variables.values())):
+        assert attrs
+        for value in attrs.values():
+            assert type(value) in (str, int, float)
+            assert value == value
+
+    def refuse(constant):
+        raise AssertionError(constant)
+
+    assert json.loads(ds.attrs["provenance"], parse_constant=refuse)["beamprop"] == bp.__version__
+
+
+# --- other readers ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["field", "scalar field", "scattering", "bloch"])
+def test_netcdf4_and_h5py_read_our_files(tmp_path, datasets, name):
+    """Both read complex variables as complex numbers, with units."""
+    ds = datasets[name]
+    bp.save(ds, tmp_path / "a.nc")
+    with netCDF4.Dataset(tmp_path / "a.nc", auto_complex=True) as nc, h5py.File(tmp_path / "a.nc") as h5:
+        for variable, values in ds.variables.items():
+            np.testing.assert_array_equal(np.ma.getdata(nc[variable][...]), values)
+            np.testing.assert_array_equal(h5[variable][()], values)
+            assert nc[variable].units == values.attrs["units"]
+            assert nc[variable].dimensions == values.dims
+        assert "p" not in ds or h5["p"].dtype == complex
+        assert nc.provenance == ds.attrs["provenance"]
+
+
+def test_split_files_are_plain(tmp_path, datasets):
+    """With split_complex every variable is real: a reader that does not know compound types sees pairs."""
+    ds = datasets["field"]
+    bp.save(ds, tmp_path / "a.nc", split_complex=True)
+    with netCDF4.Dataset(tmp_path / "a.nc") as nc:
+        assert {"p_real", "p_imag"} <= set(nc.variables)
+        assert "p" not in nc.variables
+        assert not nc.cmptypes
+        assert all(v.dtype.kind == "f" for v in nc.variables.values())
+        np.testing.assert_array_equal(nc["p_real"][...] + 1j * nc["p_imag"][...], ds.p)
+        assert nc["p_real"].units == "Pa"
+    with xr.open_dataset(tmp_path / "a.nc", engine="netcdf4") as plain:
+        np.testing.assert_array_equal(plain.p_imag, ds.p.imag)
+
+
+def test_we_read_what_xarray_and_netcdf4_wrote(tmp_path, datasets):
+    """A netCDF file of the other library loads as complex too."""
+    ds = datasets["scattering"]
+    ds.to_netcdf(tmp_path / "a.nc", engine="netcdf4", auto_complex=True)
+    again = bp.load(tmp_path / "a.nc")
+    np.testing.assert_array_equal(again.t, ds.t)
+    assert again.t.dtype == complex
+    assert bp.provenance(again)["slab"] == SLAB
+
+
+def run_without(blocked, code):
+    """Run code in a fresh interpreter that cannot import `blocked`."""
+    head = f"import sys; sys.modules.update(dict.fromkeys({list(blocked)!r}))\n"
+    done = subprocess.run(
+        [sys.executable, "-W", "error::UserWarning", "-c", head + code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_files_work_without_netcdf4(tmp_path, datasets):
+    """Written and read with netCDF4 out of reach, the file is the same; without zarr a store is refused with advice."""
+    bp.save(datasets["field"], tmp_path / "a.nc")
+    run_without(
+        ["netCDF4", "zarr"],
+        f"""
+import beamprop as bp, xarray as xr
+ds = bp.load({str(tmp_path / "a.nc")!r})
+assert bp.provenance(ds)["slab"].periods == 20
+bp.save(ds, {str(tmp_path / "b.nc")!r})
+bp.save(ds, {str(tmp_path / "c.nc")!r}, split_complex=True)
+for name in ("b.nc", "c.nc"):
+    xr.testing.assert_identical(bp.load({str(tmp_path)!r} + "/" + name), ds)
+try:
+    bp.save(ds, {str(tmp_path / "d.zarr")!r})
+except ImportError as error:
+    assert "beamprop[zarr]" in str(error), error
+else:
+    raise AssertionError("saved without zarr")
+""",
+    )
+    assert names(tmp_path) == ["a.nc", "b.nc", "c.nc"]
+    xr.testing.assert_identical(bp.load(tmp_path / "b.nc"), datasets["field"])
+
+
+# --- whole or not at all ----------------------------------------------------------------------------------
+
+
+class Stop(Exception):
+    """Raised by a writer that fails half-way."""
+
+
+@pytest.fixture(params=["a.nc", "a.zarr"])
+def failing(request, monkeypatch):
+    """A file name, and a writer of its kind that fails after it has written something."""
+    method = "to_netcdf" if request.param.endswith("nc") else "to_zarr"
+    original = getattr(xr.Dataset, method)
+
+    def half(self, target, **options):
+        original(self, target, **options)
+        raise Stop
+
+    def switch_on():
+        monkeypatch.setattr(xr.Dataset, method, half)
+
+    return request.param, switch_on
+
+
+def test_a_writer_that_fails_leaves_nothing(tmp_path, small, failing):
+    """No file under the name, no scratch beside it."""
+    name, switch_on = failing
+    switch_on()
+    with pytest.raises(Stop):
+        bp.save(small, tmp_path / name)
+    assert names(tmp_path) == []
+
+
+def test_a_writer_that_fails_leaves_the_old_file(tmp_path, small, datasets, failing):
+    """What stood there stays as it was."""
+    name, switch_on = failing
+    bp.save(datasets["widths"], tmp_path / name)
+    switch_on()
+    with pytest.raises(Stop):
+        bp.save(small, tmp_path / name)
+    assert names(tmp_path) == [name]
+    xr.testing.assert_identical(bp.load(tmp_path / name), datasets["widths"])
+
+
+def test_the_name_appears_when_the_file_is_complete(tmp_path, small, monkeypatch):
+    """While it is being written the file has another name."""
+    seen = []
+    original = xr.Dataset.to_netcdf
+
+    def watched(self, target, **options):
+        original(self, target, **options)
+        seen.append((tmp_path / "a.nc").exists())
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", watched)
+    bp.save(small, tmp_path / "a.nc")
+    assert seen == [False]
+    assert (tmp_path / "a.nc").exists()
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.zarr"])
+def test_overwriting(tmp_path, small, datasets, name):
+    """The newer dataset takes the older one's place, wholly."""
+    bp.save(datasets["field"], tmp_path / name)
+    bp.save(small, str(tmp_path / name))
+    xr.testing.assert_identical(bp.load(tmp_path / name), small)
+    assert names(tmp_path) == [name]
+
+
+def test_overwriting_what_is_loaded(tmp_path, small):
+    """load closes its file: the same name can be written from what was loaded."""
+    bp.save(small, tmp_path / "a.nc")
+    ds = bp.load(tmp_path / "a.nc")
+    bp.save(ds.assign_attrs(note="again"), tmp_path / "a.nc")
+    assert bp.load(tmp_path / "a.nc").attrs["note"] == "again"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX permissions")
+def test_files_have_the_usual_permissions(tmp_path, small):
+    """Readable by whom the umask lets, not by the writer alone."""
+    old = os.umask(0o022)
+    try:
+        bp.save(small, tmp_path / "a.nc")
+    finally:
+        os.umask(old)
+    assert (tmp_path / "a.nc").stat().st_mode & 0o777 == 0o644
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.zarr"])
+def test_a_folder_of_other_things_is_not_overwritten(tmp_path, small, name):
+    """A folder by that name which is no Zarr store holds somebody's files: refused, and left alone."""
+    (tmp_path / name).mkdir()
+    (tmp_path / name / "thesis.txt").write_text("years of work")
+    with pytest.raises((ValueError, OSError)):
+        bp.save(small, tmp_path / name)
+    assert (tmp_path / name / "thesis.txt").read_text() == "years of work"
+    assert names(tmp_path) == [name]
+
+
+# --- refused ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["a.txt", "a", "a.npz", ".nc", "nc"])
+def test_unknown_endings(tmp_path, small, name):
+    """A ValueError that names the path and lists the endings, by save and load alike."""
+    for ask in (lambda: bp.save(small, tmp_path / name), lambda: bp.load(tmp_path / name)):
+        with pytest.raises(ValueError, match=r"^path:.*\.nc.*\.zarr"):
+            ask()
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["a.nc", "a.zarr"])
+def test_missing_folders_and_files(tmp_path, small, name):
+    """Folders are not made, and a missing file is a ValueError."""
+    with pytest.raises(ValueError, match=r"^path:.*existing folder"):
+        bp.save(small, tmp_path / "none" / name)
+    with pytest.raises(ValueError, match=r"^path:.*existing file"):
+        bp.load(tmp_path / name)
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        ({"ds": 3}, "^ds:"),
+        ({"compression": 10}, "^compression:"),
+        ({"compression": -1}, "^compression:"),
+        ({"compression": "a"}, "^compression:"),
+    ],
+)
+def test_wrong_arguments_of_save(tmp_path, small, change, match):
+    """No dataset, or a compression that zlib does not have."""
+    with pytest.raises(ValueError, match=match):
+        bp.save(**({"ds": small, "path": tmp_path / "a.nc"} | change))
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["A.NC", "a.nc4", "a.netcdf", "a.h5"])
+def test_other_endings_of_netcdf(tmp_path, small, name):
+    """Capital letters and the other common endings work too."""
+    bp.save(small, tmp_path / name)
+    xr.testing.assert_identical(bp.load(tmp_path / name), small)
