@@ -268,10 +268,6 @@ def test_warnings_go_to_stderr():
 # --- wrong use --------------------------------------------------------------------------------------------
 
 
-def wrong(*options, reason):
-    return pytest.param(*options, marks=pytest.mark.xfail(strict=True, reason=reason))
-
-
 WRONG = [
     *[
         ("width", [*P, option, value], word)
