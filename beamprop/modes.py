@@ -24,10 +24,18 @@ LOSS = 1e-8
 #: A box of the search begins this far (relative) to the right of the last branch point.
 BESIDE = 1e-8
 
+#: A path leaves at most so many modes on its wrong side, and the search for them takes at most so many values of D.
+MOST_WRONG = 24
+MOST_VALUES = 100_000
+
 #: D(kx) as (value, logarithm) for an array of kx.
 Dispersion = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 #: The same for several slabs or frequencies: kx, and which of them each belongs to.
 ManyDispersions = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
+class TooManyModes(ArithmeticError):
+    """A search that would take too long."""
 
 
 class Mode(NamedTuple):
@@ -66,16 +74,16 @@ def may_guide_backward(s: Scene) -> bool:
     ) and not any(bool(np.any(values.layers.vanishing)) for values in s.segments)
 
 
-def winding(f: Dispersion, path: np.ndarray, finest: float) -> int:
+def winding(f: Dispersion, path: np.ndarray, finest: float, most: float = math.inf) -> int:
     """Turns of D about 0 along a closed path."""
-    return int(windings(lambda k, _: f(k), path[None], finest)[0])
+    return int(windings(lambda k, _: f(k), path[None], finest, most)[0])
 
 
-def windings(f: ManyDispersions, paths: np.ndarray, finest: float) -> np.ndarray:
+def windings(f: ManyDispersions, paths: np.ndarray, finest: float, most: float = math.inf) -> np.ndarray:
     """Turns of several D about 0, each along its own closed path: paths (P, n), turns (P,).
 
     A step is halved until both halves change log D by little and alike; steps shorter than `finest` are left alone (a zero
-    lies on the path).
+    lies on the path). TooManyModes where that takes more than `most` values of D.
     """
     a = paths.astype(complex).ravel()
     b = np.roll(paths, -1, axis=1).astype(complex).ravel()
@@ -85,6 +93,9 @@ def windings(f: ManyDispersions, paths: np.ndarray, finest: float) -> np.ndarray
     at_b = tuple(np.roll(v.reshape(paths.shape), -1, axis=1).ravel() for v in (value, log))
     total = np.zeros(paths.shape[0])
     while a.size:
+        most -= a.size
+        if most < 0:
+            raise TooManyModes
         middle = (a + b) / 2
         at_middle = f(middle, owner)
         first, second = _step(at_a, at_middle), _step(at_middle, at_b)
@@ -140,9 +151,13 @@ class Box(NamedTuple):
         return (self.left - slack <= k.real <= self.right + slack) and (self.low - slack <= k.imag <= self.high + slack)
 
 
-def zeros(f: Dispersion, box: Box, scale: float, total: int) -> list[complex]:
-    """The `total` zeros of D inside a box, by halving it until Newton's method has one to find."""
+def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.inf) -> list[complex]:
+    """The `total` zeros of D inside a box, by halving it until Newton's method has one to find.
+
+    TooManyModes where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
+    """
     found: list[complex] = []
+    outlines = 0
     todo = [(box, total)] if total > 0 else []
     while todo:
         part, count = todo.pop()
@@ -155,7 +170,10 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int) -> list[complex]:
             if size < 1e-6 * scale:
                 continue
         for half in part.halves():
-            inside = winding(f, half.outline(), 1e-9 * scale)
+            inside = winding(f, half.outline(), 1e-9 * scale, most)
+            outlines += 1
+            if outlines > most / 200:
+                raise TooManyModes
             if inside > 0:
                 todo.append((half, inside))
     return found
@@ -190,12 +208,17 @@ def is_lossless(s: Scene) -> bool:
 
 
 def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600) -> list[complex]:
-    """Zeros of a lossless slab on the axis beyond the branch points, where D is real but for a constant phase."""
+    """Zeros of a lossless slab on the axis beyond the branch points, where D is real but for a constant phase.
+
+    TooManyModes where there are far more than a path could go around.
+    """
     k = left + (right - left) * (np.arange(samples) + 0.5) / samples
     value, log = f(k.astype(complex))
     angle = np.angle(value) + np.imag(log)
     sign = np.cos(angle - angle[0]) > 0
     at = np.flatnonzero(sign[1:] != sign[:-1])
+    if at.size > 8 * MOST_WRONG:
+        raise TooManyModes
     found = (refine(f, complex(k[i] + k[i + 1]) / 2, (k[i + 1] - k[i]) / 2) for i in at)
     return [complex(k.real) for k, step in found if step < 1e-9 * right and abs(k.imag) < 1e-9 * right]
 
@@ -225,27 +248,65 @@ def _direction(s: Scene, k: complex) -> int:
 
 
 class Between(NamedTuple):
-    """Modes near the real axis on the right: those that a path below the axis leaves on the wrong side, and all known."""
+    """Modes that a path below the axis on the right leaves on its wrong side, and the radii of discs that hold no other."""
 
     wrong: tuple[complex, ...]
-    known: tuple[complex, ...]
+    radii: tuple[float, ...]
 
 
 NONE = Between((), ())
+#: More modes than can be told apart.
+UNCLEAR = Between((complex("nan"),), (0.0,))
 
 
 def between(s: Scene, depth: float, band: float) -> Between:
     """Modes below the real axis (or on it, but backward) and above a path at `depth` below it, 0 < Re kx < band."""
     if not may_guide_backward(s):
         return NONE
-    if not is_lossless(s):
-        modes = find_modes(s, Box(1e-3 * s.k0, band, -depth, 0.0))[0]
-    else:
-        edge = max(s.branches) * (1 + BESIDE)
-        modes = find_modes(s, Box(1e-3 * s.k0, min(edge, band), -depth, 0.0))[0]
-        if band > edge:
-            modes += find_modes(s, Box(edge, band, -depth, depth))[0]
-    return Between(tuple(m.kx for m in modes if m.direction < 0), tuple(m.kx for m in modes))
+    start, edge = 1e-3 * s.k0, max(s.branches) * (1 + BESIDE)
+    try:
+        if not is_lossless(s):
+            found = _few_modes(s, Box(start, band, -depth, 0.0))
+        else:
+            found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
+            if band > edge:
+                found += _few_modes(s, Box(edge, band, -depth, depth))
+        wrong = [m.kx for m in found if m.direction < 0]
+        return Between(tuple(wrong), tuple(_free_disc(s, k, [m.kx for m in found]) for k in wrong))
+    except TooManyModes:
+        return UNCLEAR
+
+
+def _few_modes(s: Scene, box: Box) -> list[Mode]:
+    """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
+    f = dispersion_of(s)
+    total = winding(f, box.outline(48), 1e-9 * box.right, MOST_VALUES)
+    if total <= 0:
+        return []
+    found: list[complex] = []
+    if is_lossless(s) and box.low < 0 < box.high:
+        for samples in (600, 4800, 38_400):
+            found = real_zeros(f, box.left, box.right, samples)
+            if len(found) >= total:
+                break
+    if len(found) < total:
+        if total > MOST_WRONG:
+            raise TooManyModes
+        found = zeros(f, box, box.right, total, MOST_VALUES)
+    if not found:
+        raise TooManyModes
+    return [Mode(k, _direction(s, k), 0.0) for k in found]
+
+
+def _free_disc(s: Scene, k: complex, others: list[complex]) -> float:
+    """Radius of a disc around a mode that holds no other mode, known or not, and no branch point."""
+    apart = [abs(k - other) for other in (*others, *s.branches) if abs(k - other) > 1e-9 * abs(k)]
+    radius = 0.4 * min(apart, default=abs(k))
+    f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
+    at_least = winding(f, k + 1e-6 * abs(k) * circle, 1e-12 * abs(k), MOST_VALUES)
+    while radius > 1e-6 * abs(k) and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
+        radius /= 2
+    return radius
 
 
 def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
@@ -263,7 +324,10 @@ def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
 
     def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
         boxes = [Box(*sides).outline(12) for sides in zip(left, right, low, high, strict=True)]
-        return windings(evaluate, np.array(boxes), 1e-9 * float(np.min(s.k0)))
+        try:
+            return windings(evaluate, np.array(boxes), 1e-9 * float(np.min(s.k0)), MOST_VALUES * depth.size)
+        except TooManyModes:
+            return np.ones(depth.shape, int)
 
     zero, start = np.zeros(depth.shape), 1e-3 * s.k0
     if not is_lossless(s):
@@ -273,20 +337,19 @@ def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
     return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
 
 
-def with_circles(line: Line, found: Between, branches: tuple[float, ...], reach: float) -> Line:
+def with_circles(line: Line, found: Between, reach: float) -> Line:
     """Add to a path small clockwise circles around the modes that lie above it and should lie below.
 
-    A circle keeps away from all other modes and branch points known; trapezoid rule, 32 nodes.
+    Trapezoid rule, 32 nodes, on a circle in the disc that holds nothing else.
     """
-    above = [k for k in found.wrong if k.imag > np.interp(k.real, line.k.real, line.k.imag)]
-    if not above:
-        return line
     nodes, weights = [], []
     turn = np.exp(-2j * np.pi * (np.arange(32) + 0.5) / 32)
-    for k in above:
-        others = [abs(k - other) for other in (*found.known, *branches) if abs(k - other) > 1e-9 * abs(k)]
-        radius = min(0.4 * min(others, default=abs(k)), 1.0 / reach)
-        nodes.append(k + radius * turn)
-        weights.append(radius * turn * (-2j * np.pi / 32) / (2 * np.pi))
+    for k, free in zip(found.wrong, found.radii, strict=True):
+        if k.imag > np.interp(k.real, line.k.real, line.k.imag):
+            radius = min(free, 1.0 / reach)
+            nodes.append(k + radius * turn)
+            weights.append(radius * turn * (-2j * np.pi / 32) / (2 * np.pi))
+    if not nodes:
+        return line
     # in front, so that the path's end stays the last node
     return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]))

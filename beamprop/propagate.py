@@ -23,7 +23,8 @@ MOST_MODES = 200_000
 ATTEMPTS = 14
 
 #: h(kx, z): what a plane wave of the source's spectrum has become at z; (Z, n).
-Transfer = Callable[[np.ndarray, np.ndarray], np.ndarray]
+#: h(kx, z, shift): the same at kx (1 + shift) and w (1 - shift), to see what rounding does.
+Transfer = Callable[..., np.ndarray]
 
 
 def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
@@ -48,14 +49,30 @@ def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
 
 def through(s: Scene, z0: float) -> Transfer:
     """The transfer through a slab from the launch plane z0."""
-    return lambda kx, z: factors(s, kx, z, z0)
+
+    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        return factors(_shifted(s, shift), kx * (1 + shift), z, z0)
+
+    return transfer
+
+
+def _shifted(s: Scene, shift: float) -> Scene:
+    """w (1 - shift), and layers of a cell that differ among themselves by an eighth of that: densities may cancel."""
+    if not shift:
+        return s
+    segments = []
+    for values in s.segments:
+        mass = values.layers.mass
+        uneven = 1 + shift / 8 * np.where(np.sin(2.4 * np.arange(mass.shape[0])) > 0, 1, -1)[:, None]
+        segments.append(values._replace(layers=values.layers._replace(mass=mass * uneven)))
+    return s._replace(omega=s.omega * (1 - shift), segments=segments)
 
 
 def free(s: Scene) -> Transfer:
     """The transfer through the medium in front alone, over the distance z."""
 
-    def transfer(kx: np.ndarray, z: np.ndarray) -> np.ndarray:
-        kz = outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before))
+    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        kz = outgoing_kz(kx * (1 + shift), _shifted(s, shift).omega[0], *(v[0] for v in s.before))
         return np.exp(1j * np.multiply.outer(z, kz))
 
     return transfer
@@ -78,7 +95,17 @@ def _reach(s: Scene, beams: list[Beam], x: np.ndarray, z: np.ndarray, rtol: floa
     extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = max(max(-lo, hi) for lo, hi in bands)
-    return Reach(s.k0, min(s.branches), band, max(extent, source), source, path)
+    return Reach(s.k0, min(s.branches), min(band, _arriving(s, beam.z0, z, tolerance)), max(extent, source), source, path)
+
+
+def _arriving(s: Scene, z0: float, z: np.ndarray, tolerance: float) -> float:
+    """|kx| beyond which waves have decayed to `tolerance` on their way, in the half-spaces, to the nearest plane.
+
+    What a slab does to them is not known here: it shows in the band's edge.
+    """
+    nearest = float(z.min())
+    way = min(nearest, 0.0) - z0 + max(0.0, nearest - s.thickness)
+    return math.hypot(max(s.branches), math.log(1 / tolerance) / way) if way > 0 else math.inf
 
 
 def _check_points(
@@ -140,21 +167,34 @@ def choose_line(
 
 def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solution:
     """Widen the window, or the band where its edge is what is missing, until two bent paths agree."""
-    plan = spectral.plan_bent(reach, rtol, _noise(checks, reach))
-    found = modes.between(s, 1.05 * plan.depth, 1.5 * plan.band) if checks.guided else modes.NONE
+    plan = spectral.plan_bent(reach, rtol, noise := _noise(checks, reach))
+    found, searched = modes.NONE, 0.0 if checks.guided else math.inf
     best: Solution | None = None
+    shrinks = 2 if modes.is_lossless(s) else 6  # on the axis itself their number does not fall
+    in_vain = 0
     for _ in range(ATTEMPTS):
+        if plan.band > searched:
+            searched = 1.15 * plan.band
+            found = modes.between(s, 1.05 * plan.depth, searched)
+        if found is modes.UNCLEAR and shrinks == 0:
+            break
+        if found is modes.UNCLEAR:  # nearer to the axis there are fewer
+            shrinks -= 1
+            plan = spectral.plan_bent(reach._replace(band=plan.band), rtol, noise, plan.depth / 3)
+            searched = 0.0
+            continue
         if plan.other().band * plan.other().window > 2 * np.pi * MOST_MODES:
             break
         line, second = (
-            modes.with_circles(spectral.bent_line(p), found, (*s.branches,), max(reach.extent, reach.source))
+            modes.with_circles(spectral.bent_line(p), found, max(reach.extent, reach.source))
             for p in (plan, plan.other())
         )
         error, edge = _difference(s, checks, line, second)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
             best = Solution(line, error, circles=bool(found.wrong))
-        if error.max() <= rtol:
+        in_vain = in_vain + 1 if stuck else 0
+        if error.max() <= rtol or in_vain > 3:
             break
         if edge > 0.3 * rtol:
             plan = plan._replace(band=plan.band * 1.5)
@@ -162,6 +202,8 @@ def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solu
             plan = plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
         else:
             plan = plan._replace(window=plan.window * 1.6)
+    if best is None and found is modes.UNCLEAR:
+        raise ValueError("slab: it guides more backward waves than can be told from the forward ones; add loss")
     if best is None:
         raise ValueError(f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window")
     return best
@@ -215,8 +257,12 @@ def _propagating_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) 
 
 
 def _difference(s: Scene, checks: _Checks, one: Line, two: Line) -> tuple[np.ndarray, float]:
-    """Estimated error of the first line over the largest |p| of each plane, by beam; and what is due to the band's edge."""
-    h1, h2 = (checks.transfer(line.k, checks.z) for line in (one, two))
+    """Estimated error of the first line over the largest |p| of each plane, by beam; and what is due to the band's edge.
+
+    The second line's response is taken at kx and w moved in their last bits, so that rounding which both lines share shows
+    too.
+    """
+    h1, h2 = checks.transfer(one.k, checks.z), checks.transfer(two.k, checks.z, 4 * spectral.EPS)
     errors, edges = [], []
     for beam in checks.beams:
         a, b = (point_sum(s, beam, line, h, checks.x) for line, h in ((one, h1), (two, h2)))

@@ -16,12 +16,16 @@ with it the Bloch phase, has full relative precision; for an opaque one a = exp(
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import itertools
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .conventions import outgoing_kz
 from .media import FluidValues, LayerValues, SegmentValues
+from .products import BLOCK, small_product
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
 SCALE_FROM = 30.0
@@ -73,18 +77,28 @@ class BlochPhase(NamedTuple):
 # --- one layer --------------------------------------------------------------------------------------------
 
 
-def _series(u: np.ndarray, size: float) -> Entire:
-    """Power series in u; enough terms for full precision at |u| <= size < 1."""
+def _terms(size: float) -> int:
+    """How many terms of the series in u full precision takes at |u| <= size < 1."""
     terms, last = 1, size / 2
-    while last > 1e-18 and terms < 12:
+    while last > 1e-17 and terms < 12:
         terms += 1
         last *= size / ((2 * terms - 1) * (2 * terms))
-    c = np.zeros_like(u)
-    s = np.zeros_like(u)
-    for k in range(terms, 0, -1):  # c = -u/2 (1 - u/12 (1 - ...)), s = 1 - u/6 (1 - u/20 (1 - ...))
-        c = (c + 1) * (u * (-1 / ((2 * k - 1) * (2 * k))))
-        s = (s + 1) * (u * (-1 / ((2 * k) * (2 * k + 1))))
-    return Entire(1.0, c, s + 1, None)
+    return terms
+
+
+def _series(u: np.ndarray, size: float) -> Entire:
+    """Power series in u, in place; enough terms for full precision at |u| <= size < 1."""
+    # c = -u/2! + u^2/4! - ...,  s = 1 - u/3! + u^2/5! - ...
+    terms = _terms(size)
+    c = u * ((-1) ** terms / math.factorial(2 * terms))
+    s = u * ((-1) ** terms / math.factorial(2 * terms + 1))
+    for k in range(terms - 1, 0, -1):
+        c += (-1) ** k / math.factorial(2 * k)
+        c *= u
+        s += (-1) ** k / math.factorial(2 * k + 1)
+        s *= u
+    s += 1
+    return Entire(1.0, c, s, None)
 
 
 def entire(u: np.ndarray) -> Entire:
@@ -115,6 +129,16 @@ def _layer(layers: LayerValues, j: int, omega2: np.ndarray, kx2: np.ndarray, sha
     return A, B, entire(A * B)
 
 
+def _layers(layers: LayerValues, part: slice, omega2: np.ndarray, kx2: np.ndarray) -> tuple:
+    """(A, B, Entire) of several layers at once: (J, F, 1), (J, F, n)."""
+    A = layers.mass[part][..., None]
+    b0 = omega2 * layers.compliance[part][..., None]
+    b1 = -layers.mobility[part][..., None]
+    B = b1 * kx2
+    B += b0
+    return A, B, entire(A * B)
+
+
 def _layer_back(state: State, A: np.ndarray, B: np.ndarray, f: Entire) -> State:
     """Carry a state back through one layer."""
     p = f.a * state.p + (f.c * state.p - A * f.s * state.q)
@@ -134,20 +158,6 @@ def _normalised(state: State) -> State:
 # --- a cell and its powers --------------------------------------------------------------------------------
 
 
-def _times(m: Matrix | None, A: np.ndarray, B: np.ndarray, f: Entire) -> Matrix:
-    """(this layer) x (what stands in front of it): layers are added from the near side on."""
-    if m is None:
-        return Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
-    l11, l12, l21 = f.c, A * f.s, -B * f.s
-    e11 = f.a * m.e11 + (l11 * (m.a + m.e11) + l12 * m.e21)
-    e12 = f.a * m.e12 + (l11 * m.e12 + l12 * (m.a + m.e22))
-    e21 = f.a * m.e21 + (l21 * (m.a + m.e11) + l11 * m.e21)
-    e22 = f.a * m.e22 + (l21 * m.e12 + l11 * (m.a + m.e22))
-    growth = f.growth if m.growth is None else m.growth if f.growth is None else m.growth + f.growth
-    out = Matrix(f.a * m.a, e11, e12, e21, e22, growth)
-    return _renormalised(out)
-
-
 def _renormalised(m: Matrix) -> Matrix:
     """Take size out of a matrix whose entries would overflow in the next products."""
     size = np.abs(m.e11) + np.abs(m.e12) + np.abs(m.e21) + np.abs(m.e22)
@@ -159,14 +169,134 @@ def _renormalised(m: Matrix) -> Matrix:
     return Matrix(m.a / size, m.e11 / size, m.e12 / size, m.e21 / size, m.e22 / size, growth)
 
 
+def _product(near: Matrix, far: Matrix) -> Matrix:
+    """(far) x (near)."""
+    # E = a_far E_near + a_near E_far + E_far E_near, where a = 1 unless something grows
+    e11 = far.e11 * near.e11
+    e11 += far.e12 * near.e21
+    e12 = far.e11 * near.e12
+    e12 += far.e12 * near.e22
+    e21 = far.e21 * near.e11
+    e21 += far.e22 * near.e21
+    e22 = far.e21 * near.e12
+    e22 += far.e22 * near.e22
+    if near.growth is None and far.growth is None:
+        for e, one, two in zip((e11, e12, e21, e22), near[1:5], far[1:5], strict=True):
+            e += one
+            e += two
+        return _renormalised(Matrix(1.0, e11, e12, e21, e22, None))
+    for e, one, two in zip((e11, e12, e21, e22), near[1:5], far[1:5], strict=True):
+        e += far.a * one
+        e += near.a * two
+    growth = (0.0 if near.growth is None else near.growth) + (0.0 if far.growth is None else far.growth)
+    return _renormalised(Matrix(far.a * near.a, e11, e12, e21, e22, growth))
+
+
+def _at(m: Matrix, index: slice) -> Matrix:
+    return Matrix(*(v[index] if isinstance(v, np.ndarray) else v for v in m))
+
+
+def _joined(m: Matrix, last: Matrix) -> Matrix:
+    """Two stacks of matrices, one behind the other."""
+    shape = m.e11.shape
+    if m.growth is None and last.growth is not None:
+        m = m._replace(a=np.ones(shape), growth=np.zeros(shape))
+    if last.growth is None and m.growth is not None:
+        last = last._replace(a=np.ones(last.e11.shape), growth=np.zeros(last.e11.shape))
+    pairs = zip(m, last, strict=True)
+    return Matrix(*(np.concatenate([one, two]) if isinstance(one, np.ndarray) else one for one, two in pairs))
+
+
+def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix:
+    """Matrix of one period, all layers at once and then pair by pair: (F, n)."""
+    # plain: m = layer_N ... layer_2 layer_1, each [[C, A s], [-B s, C]]
+    A, B, f = _layers(layers, slice(None), omega * omega, kx2)
+    s = np.broadcast_to(f.s, f.c.shape)
+    m = Matrix(f.a, f.c, A * s, -B * s, f.c, f.growth)
+    while (count := m.e11.shape[0]) > 1:
+        even = count - count % 2
+        pairs = _product(_at(m, slice(0, even, 2)), _at(m, slice(1, even, 2)))
+        m = _joined(pairs, _at(m, slice(even, None))) if count % 2 else pairs
+    return Matrix(*(v[0] if isinstance(v, np.ndarray) else v for v in m))
+
+
 def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matrix:
-    """Matrix of one period, near to far face."""
-    omega2, kx2 = omega * omega, kx * kx
-    m: Matrix | None = None
-    for j in range(len(layers.thickness)):
-        m = _times(m, *_layer(layers, j, omega2, kx2))
-    assert m is not None
-    return m
+    """Matrix of one period, near to far face: a polynomial in kx^2 where that is as exact, else layer by layer."""
+    kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex)
+    if kx2.shape[1] >= 4 * CIRCLE and (fitted := _fitted(layers, omega, kx2)) is not None:
+        return fitted
+    block = max(1, BLOCK // len(layers.thickness))
+    if kx2.size <= block:
+        return _layer_product(layers, omega, kx2)
+    out = np.empty((4, *kx2.shape), complex)
+    a, growth = np.ones(kx2.shape), np.zeros(kx2.shape)
+    columns = min(kx2.shape[1], max(64, block // kx2.shape[0]))
+    rows = max(1, block // columns)
+    for i, j in itertools.product(range(0, kx2.shape[0], rows), range(0, kx2.shape[1], columns)):
+        part = slice(i, i + rows), slice(j, j + columns)
+        m = _layer_product(_at_frequencies(layers, part[0]), omega[part[0]], kx2[part])
+        out[:, *part] = m[1:5]
+        if m.growth is not None:
+            a[part], growth[part] = m.a, m.growth
+    return Matrix(a, *out, growth) if np.any(growth) else Matrix(1.0, *out, None)
+
+
+def _at_frequencies(layers: LayerValues, rows: slice) -> LayerValues:
+    """Some frequencies of a cell's values."""
+    mass, compliance, mobility, vanishing = (
+        v[:, rows] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
+    )
+    return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
+
+
+#: Points on the circle from which the Taylor coefficients of a cell's matrix are taken; one more than the highest degree.
+CIRCLE = 14
+
+
+def _fitted(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix | None:
+    """The cell's matrix from its Taylor series in v = kx^2, or None where it does not keep full precision.
+
+    E(v) is entire, so with E on the circle |v| = R around all points asked for, Cauchy's integral by the trapezoid rule
+    gives the coefficients: ``c_k = mean(E(v_m) v_m^-k)``. They fall to the rounding of E (4e-15 of the largest); two more
+    are kept and what falls further is left out. Errors: rounding, EPS times the largest E on the circle, which is kept
+    within a few times what the layers' own rounding leaves at v = 0 (`_circle_is_calm`); aliasing is smaller still.
+    """
+    radius = np.max(np.abs(kx2), axis=-1, keepdims=True)
+    radius = np.where(radius > 0, radius, 1.0)
+    if not np.all(_circle_is_calm(layers, omega * omega, radius)):
+        return None
+    turn = np.exp(2j * np.pi * np.arange(CIRCLE) / CIRCLE)
+    m = _layer_product(layers, omega, radius * turn)
+    if m.growth is not None:
+        return None
+    coefficients = np.fft.fft(np.stack(m[1:5], axis=1), axis=-1) / CIRCLE  # (F, 4, CIRCLE), of v/R
+    size = np.max(np.abs(coefficients), axis=0)
+    noise = np.all(size <= 4e-15 * size.max(axis=-1, keepdims=True), axis=0)
+    degree = 2 + int(np.argmax(noise[:-1] & noise[1:]))
+    if degree > CIRCLE - 4 or not np.any(noise[:-1] & noise[1:]):
+        return None
+    out = np.empty((4, *kx2.shape), complex)
+    rows = max(1, BLOCK // (kx2.shape[1] * (degree + 1)))
+    for start in range(0, kx2.shape[0], rows):
+        part = slice(start, start + rows)
+        _polynomials(coefficients[part, :, : degree + 1], kx2[part] / radius[part], out[:, part])
+    return Matrix(1.0, *out, None)
+
+
+def _circle_is_calm(layers: LayerValues, omega2: np.ndarray, radius: np.ndarray) -> np.ndarray:
+    """Whether E on the circle is of order 1, and its rounding not much larger than it is at kx = 0: (F, 1)."""
+    mass, compliance, mobility = (np.abs(v).sum(0)[:, None] for v in (layers.mass, layers.compliance, layers.mobility))
+    still, moved = omega2 * compliance, radius * mobility
+    return (mass * (still + moved) < 4) & (moved < 4 * still) & ~np.any(layers.vanishing, axis=0)[:, None]
+
+
+def _polynomials(coefficients: np.ndarray, v: np.ndarray, out: np.ndarray) -> None:
+    """Four polynomials (F, 4, degree + 1) at v (F, n) into out (4, F, n), powers times coefficients."""
+    powers = np.ones((v.shape[0], coefficients.shape[-1], v.shape[1]), complex)
+    for k in range(1, powers.shape[1]):
+        np.multiply(powers[:, k - 1], v, out=powers[:, k])
+    for i in range(v.shape[0]):
+        out[:, i] = small_product(coefficients[i], powers[i])
 
 
 def bloch_phase(m: Matrix) -> BlochPhase:
@@ -223,45 +353,92 @@ class Response(NamedTuple):
 
 
 class _Station(NamedTuple):
-    """One segment during the march: its far-face state, its matrix (None for a single period) and where it begins."""
+    """One segment during the march: its far-face state, its matrix (None for a single period) and where it begins.
+
+    `faces` are the states behind those layers of a single period in which depths lie.
+    """
 
     values: SegmentValues
     far: State
     matrix: Matrix | None
     bloch: BlochPhase | None
     start: float
+    faces: dict[int, State]
 
 
 def _march(
-    segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State
+    segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State, z: np.ndarray
 ) -> tuple[State, list[_Station]]:
     """Carry the outgoing state back through all segments."""
     starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
-    omega2, kx2 = omega * omega, kx * kx
+    owner = _owner(starts[:-1], z)
     stations = []
-    for segment, start in zip(reversed(segments), reversed(starts[:-1]), strict=True):
-        far, m, b = state, None, None
+    for index in reversed(range(len(segments))):
+        segment, start = segments[index], float(starts[index])
+        far, m, b, faces = state, None, None, {}
         if segment.periods == 1:
-            for j in reversed(range(len(segment.layers.thickness))):
-                state = _layer_back(state, *_layer(segment.layers, j, omega2, kx2))
-                if j % 16 == 0:
-                    state = _normalised(state)
+            wanted = set(_places(segment, z[owner == index] - start).layer.tolist())
+            state, faces = _through_layers(segment.layers, omega, kx, state, wanted)
         else:
             m = cell_matrix(segment.layers, omega, kx)
             b = bloch_phase(m)
             state = _normalised(_power_back(m, b, state, segment.periods))
-        stations.append(_Station(segment, far, m, b, float(start)))
+        stations.append(_Station(segment, far, m, b, start, faces))
     return state, stations[::-1]
 
 
+def _owner(starts: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Which segment each depth lies in."""
+    return np.clip(np.searchsorted(starts, z, side="right") - 1, 0, None)
+
+
+def _through_layers(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, state: State, wanted: set[int]
+) -> tuple[State, dict[int, State]]:
+    """Carry a state back through layers one by one, their functions made in blocks; keep those behind `wanted` layers."""
+    # plain: for each layer from the last, state = _layer_back(state, *_layer(...)), normalised now and then
+    omega2, kx2 = omega * omega, kx * kx
+    count, faces = len(layers.thickness), {}
+    size = min(16, max(1, BLOCK // max(1, kx2.size)))
+    for stop in range(count, 0, -size):
+        first = max(0, stop - size)
+        A, B, f = _layers(layers, slice(first, stop), omega2, kx2)
+        if f.growth is None:
+            As, Bs = A * f.s, B * f.s
+        for j in reversed(range(stop - first)):
+            if first + j in wanted:
+                faces[first + j] = state
+            if f.growth is None:
+                state = State(*_thin_back(state.p, state.q, f.c[j], As[j], Bs[j]), state.log)
+            else:
+                state = _layer_back(state, A[j], B[j], Entire(f.a[j], f.c[j], f.s[j], f.growth[j]))  # type: ignore[index]
+        state = _normalised(state)
+    return state, faces
+
+
+def _thin_back(p: np.ndarray, q: np.ndarray, c: np.ndarray, As: np.ndarray, Bs: np.ndarray) -> tuple:
+    """`_layer_back` where nothing grows, with A s and B s at hand."""
+    new_p, new_q = c * p, c * q
+    new_p -= As * q
+    new_q += Bs * p
+    new_p += p
+    new_q += q
+    return new_p, new_q
+
+
 def _near(
-    segments: list[SegmentValues], front: FluidValues, behind: FluidValues, omega: np.ndarray, kx: np.ndarray
+    segments: list[SegmentValues],
+    front: FluidValues,
+    behind: FluidValues,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray,
 ) -> tuple[np.ndarray, State, list[_Station]]:
     """kz in front, and the state at the near face that leaves a unit outgoing wave behind."""
     kz1 = outgoing_kz(kx, omega, *front)
     kz2 = outgoing_kz(kx, omega, *behind)
     exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
-    near, stations = _march(segments, omega, kx, exit_state)
+    near, stations = _march(segments, omega, kx, exit_state, z)
     return kz1, near, stations
 
 
@@ -273,7 +450,7 @@ def dispersion(
     It is the incident amplitude that a unit outgoing wave behind the slab needs, times 2 i kz: the denominator of r and t.
     """
     front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
-    kz1, near, _ = _near(segments, front, behind, omega, kx)
+    kz1, near, _ = _near(segments, front, behind, omega, kx, np.empty(0))
     return 1j * kz1 * near.p + front.rho_z * near.q, near.log
 
 
@@ -301,7 +478,8 @@ def solve(
     """
     kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex)
     front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
-    kz1, near, stations = _near(segments, front, behind, omega, kx)
+    z = np.empty(0) if z is None else np.asarray(z, float)
+    kz1, near, stations = _near(segments, front, behind, omega, kx, z)
     forward, backward = 1j * kz1 * near.p + front.rho_z * near.q, 1j * kz1 * near.p - front.rho_z * near.q
     size = 2j * kz1
     grazing = kz1 == 0
@@ -314,8 +492,8 @@ def solve(
         opaque = _has_vanishing_layer(segments) & (kx != 0)
         t = np.where(opaque, 0.0, t)
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
-        if z is not None and len(z):
-            inside = _inside(stations, omega, kx, np.asarray(z, float), near.log, per_incident)
+        if z.size:
+            inside = _inside(stations, omega, kx, z, near.log, per_incident)
     return Response(r, t, inside)
 
 
@@ -353,6 +531,28 @@ def _grazing(
     )
 
 
+# --- the field inside --------------------------------------------------------------------------------------
+
+
+class _Places(NamedTuple):
+    """Where depths of one segment lie: period, layer, and the share of that layer behind them; (Z,) each."""
+
+    period: np.ndarray
+    layer: np.ndarray
+    share: np.ndarray
+
+
+def _places(values: SegmentValues, depth: np.ndarray) -> _Places:
+    layers, periods = values
+    faces = np.concatenate([[0.0], np.cumsum(layers.thickness)])
+    period = np.clip(np.floor(depth / faces[-1]).astype(int), 0, periods - 1)
+    offset = np.clip(depth - period * faces[-1], 0.0, faces[-1])
+    solid = np.flatnonzero(layers.thickness > 0)
+    layer = solid[np.clip(np.searchsorted(faces[solid], offset, side="right") - 1, 0, len(solid) - 1)]
+    share = np.clip((faces[layer + 1] - offset) / layers.thickness[layer], 0.0, 1.0)
+    return _Places(period, layer, share)
+
+
 def _inside(
     stations: list[_Station],
     omega: np.ndarray,
@@ -363,80 +563,213 @@ def _inside(
 ) -> np.ndarray:
     """p at depths z inside the slab per unit incident pressure, (F, Z, n)."""
     out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
-    starts = np.array([s.start for s in stations])
-    owner = np.clip(np.searchsorted(starts, z, side="right") - 1, 0, None)
+    owner = _owner(np.array([s.start for s in stations]), z)
     for index, station in enumerate(stations):
         rows = np.flatnonzero(owner == index)
-        if rows.size:
-            _inside_segment(station, omega, kx, z[rows] - station.start, rows, near_log, per_incident, out)
+        if not rows.size:
+            continue
+        places = _places(station.values, z[rows] - station.start)
+        for i in range(kx.shape[0]):
+            one = _one_frequency(station, i)
+            fill = _fill_single if station.matrix is None else _fill_periodic
+            fill(one, omega[i : i + 1], kx[i : i + 1], places, rows, near_log[i], per_incident[i], out[i])
     return out
 
 
-def _inside_segment(
+def _one_frequency(station: _Station, i: int) -> _Station:
+    """A station at frequency i alone: leading axis 1."""
+
+    def one(record: Any) -> Any:
+        if record is None:
+            return None
+        return type(record)(*(v[i : i + 1] if isinstance(v, np.ndarray) else v for v in record))
+
+    values = SegmentValues(_at_frequencies(station.values.layers, slice(i, i + 1)), station.values.periods)
+    faces = {j: one(state) for j, state in station.faces.items()}
+    return _Station(values, one(station.far), one(station.matrix), one(station.bloch), station.start, faces)
+
+
+def _fill_single(
     station: _Station,
     omega: np.ndarray,
     kx: np.ndarray,
-    depth: np.ndarray,
+    places: _Places,
     rows: np.ndarray,
     near_log: np.ndarray,
     per_incident: np.ndarray,
     out: np.ndarray,
 ) -> None:
-    """Fill rows of `out` that lie `depth` behind the segment's near face.
+    """Fill rows of `out` that lie in a segment of one period: from the state behind each layer, the rest of that layer."""
+    omega2, kx2 = omega * omega, kx * kx
+    for j, here in _by_layer(places):
+        face = station.faces[j]
+        A, B, f = _layer(station.values.layers, j, omega2, kx2, places.share[here][:, None])
+        scale = np.exp(face.log[0] - near_log) * per_incident
+        p, _, log = _layer_back(State(face.p, face.q, np.zeros(1)), A, B, f)
+        out[rows[here]] = p * scale if f.growth is None else p * np.exp(log + face.log - near_log) * per_incident
+
+
+def _by_layer(places: _Places) -> Iterator[tuple[int, np.ndarray]]:
+    """Layers that hold depths, and which."""
+    order = np.argsort(places.layer, kind="stable")
+    layers, first = np.unique(places.layer[order], return_index=True)
+    return zip(layers.tolist(), np.split(order, first[1:]), strict=True)
+
+
+def _fill_periodic(
+    station: _Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    places: _Places,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Fill rows of `out` that lie in a segment of many periods.
 
     A depth lies in layer j of some period: whole periods behind it in closed form, then the layers behind j, then the rest
-    of layer j.
+    of layer j. All of it is linear in the far face's state, so what depends on the period (two factors) and what depends
+    on the place in the cell (two pressures) are made apart, once each, and only multiplied for each depth.
     """
+    # plain: p(z) = rest of layer j (layers behind j (_power_back(far, periods behind)))
     layers, periods = station.values
-    faces = np.concatenate([[0.0], np.cumsum(layers.thickness)])
-    period = np.clip(np.floor(depth / faces[-1]).astype(int), 0, periods - 1)
-    offset = np.clip(depth - period * faces[-1], 0.0, faces[-1])
-    solid = np.flatnonzero(layers.thickness > 0)
-    layer = solid[np.clip(np.searchsorted(faces[solid], offset, side="right") - 1, 0, len(solid) - 1)]
-    share = np.clip((faces[layer + 1] - offset) / layers.thickness[layer], 0.0, 1.0)
+    m, b, far = station.matrix, station.bloch, station.far
+    assert m is not None
+    assert b is not None
+    if m.growth is not None:
+        return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
+    behind, which = np.unique(periods - 1 - places.period, return_inverse=True)
+    g, f = _factors(b, behind, far.log[0] - near_log, per_incident)
+    moved = _moved(m, b, far)
+    for j, here, tail in _with_tails(layers, omega, kx, places):
+        both = [state if tail is None else _matrix_back(tail, state) for state in (far, moved)]
+        one, two = _rest_of_layer(layers, j, omega, kx, both, places.share[here])
+        row = which[here]
+        one *= g[row]
+        two *= f[row]
+        one += two
+        out[rows[here]] = one
+
+
+def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
+    """(M^-1 - I) far, of +-M: what `_power_back` multiplies by f."""
+    sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
+    p = sign * (m.e22 * far.p - m.e12 * far.q) - twice * far.p
+    q = sign * (m.e11 * far.q - m.e21 * far.p) - twice * far.q
+    return State(p, q, far.log)
+
+
+def _factors(b: BlochPhase, behind: np.ndarray, log: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """g and f of `_power_back` for sorted counts of periods, times exp(log - i phase count) scale: (len(behind), n)."""
+    # plain: x2n = expm1(2i reduced count), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced)
+    reduced, phase = b.reduced[0], b.phase[0]
+    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
+    edge = np.abs(x2) < TINY
+    x2n = _expm1_table(2j * reduced, behind)
+    outer = _exp_table(log, -1j * phase, behind)
+    outer *= scale
+    f = np.where(edge, behind[:, None], x2n) if np.any(edge) else x2n.copy()
+    f *= lam / np.where(edge, 1.0, x2)
+    f *= outer
+    g = x2n
+    g += 1 + lam
+    g /= 1 + lam
+    g *= outer
+    return g, f
+
+
+#: From how many periods on their powers are products of two small tables, and the step between the entries of the coarse one.
+TABLE, STEP = 48, 16
+
+
+def _split(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Counts as coarse[i] + fine[j]: coarse, i, fine, j."""
+    coarse, i = np.unique(counts // STEP, return_inverse=True)
+    return coarse * STEP, i, np.arange(STEP), counts % STEP
+
+
+def _expm1_table(y: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """expm1(counts y): (len(counts), n)."""
+    if counts.size < TABLE:
+        return np.expm1(np.multiply.outer(counts, y))
+    coarse, i, fine, j = _split(counts)
+    one, two = np.expm1(np.multiply.outer(coarse, y))[i], np.expm1(np.multiply.outer(fine, y))[j]
+    out = one * two
+    out += one
+    out += two
+    return out
+
+
+def _exp_table(log: np.ndarray, y: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """exp(log + counts y): (len(counts), n)."""
+    if counts.size < TABLE or float(np.max(np.abs(y.real))) * STEP > 300:  # a factor could overflow on its own
+        return np.exp(log + np.multiply.outer(counts, y))
+    coarse, i, fine, j = _split(counts)
+    return np.exp(log + np.multiply.outer(coarse, y))[i] * np.exp(np.multiply.outer(fine, y))[j]
+
+
+def _with_tails(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: _Places
+) -> Iterator[tuple[int, np.ndarray, Matrix | None]]:
+    """Layers that hold depths, which, and the matrix of the layers behind them in the cell."""
     omega2, kx2 = omega * omega, kx * kx
+    holding = dict(_by_layer(places))
     tail: Matrix | None = None
-    for j in reversed(range(len(layers.thickness))):
-        here = np.flatnonzero(layer == j)
-        if here.size:
-            state = _far_states(station, periods - 1 - period[here])
-            if tail is not None:
-                state = _matrix_back(tail, state)
-            part = share[here][:, None]
-            for i in range(kx.shape[0]):
-                one = State(*(np.broadcast_to(s[:, i], (here.size, kx.shape[1])) for s in state))
-                A, B, f = _layer(_one_frequency(layers, i), j, omega2[i : i + 1], kx2[i : i + 1], part)
-                p, _, log = _layer_back(one, A, B, f)
-                out[i, rows[here]] = p * np.exp(log - near_log[i]) * per_incident[i]
-        A, B, f = _layer(layers, j, omega2, kx2)
-        tail = _times_in_front(tail, A, B, f)
+    for j in reversed(range(min(holding), len(layers.thickness))):
+        if j in holding:
+            yield j, holding[j], tail
+        if j > min(holding):
+            A, B, f = _layer(layers, j, omega2, kx2)
+            layer = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
+            tail = layer if tail is None else _product(layer, tail)
 
 
-def _one_frequency(layers: LayerValues, i: int) -> LayerValues:
-    mass, compliance, mobility, vanishing = (
-        v[:, i : i + 1] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
-    )
-    return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
+def _rest_of_layer(
+    layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, faces: list[State], share: np.ndarray
+) -> list[np.ndarray]:
+    """Pressures in layer j in front of given states at its far face, `share` of its thickness away: (Z, n) each."""
+    omega2, kx2 = omega * omega, kx * kx
+    A, B, whole = _layer(layers, j, omega2, kx2)
+    u = A * B
+    size = float(np.max(np.abs(u)))
+    if size >= 0.5 or whole.growth is not None or share.size < 8:
+        A, B, f = _layer(layers, j, omega2, kx2, share[:, None])
+        return [_layer_back(face, A, B, f).p * np.ones((share.size, 1)) for face in faces]
+    # cos and sin as powers of share: p = p_far (1 - u s^2/2! + ...) - A q_far (s - u s^3/3! + ...)
+    terms = _terms(size) + 1
+    powers = share[:, None] ** np.arange(2 * terms)
+    series = np.cumprod(np.concatenate([np.ones_like(u), np.repeat(-u, terms - 1, axis=0)]), axis=0)
+    even = series / np.array([math.factorial(2 * k) for k in range(terms)])[:, None]
+    odd = series * -A / np.array([math.factorial(2 * k + 1) for k in range(terms)])[:, None]
+    out = []
+    for face in faces:
+        coefficients = np.stack([even * face.p, odd * face.q], axis=1).reshape(2 * terms, -1)
+        out.append(small_product(powers, coefficients.view(float)).view(complex))
+    return out
 
 
-def _far_states(station: _Station, behind: np.ndarray) -> State:
-    """States at the far face of the periods that have `behind` whole periods behind them: (len(behind), F, n)."""
-    if station.matrix is None or station.bloch is None:
-        return State(*(np.broadcast_to(v, (behind.size, *np.shape(station.far.p))) for v in station.far))
-    return _power_back(station.matrix, station.bloch, station.far, behind[:, None, None])
-
-
-def _times_in_front(m: Matrix | None, A: np.ndarray, B: np.ndarray, f: Entire) -> Matrix:
-    """(what stands behind) x (this layer): layers are added from the far side on."""
-    layer = _times(None, A, B, f)
-    if m is None:
-        return layer
-    e11 = m.a * layer.e11 + (m.e11 * (layer.a + layer.e11) + m.e12 * layer.e21)
-    e12 = m.a * layer.e12 + (m.e11 * layer.e12 + m.e12 * (layer.a + layer.e22))
-    e21 = m.a * layer.e21 + (m.e21 * (layer.a + layer.e11) + m.e22 * layer.e21)
-    e22 = m.a * layer.e22 + (m.e21 * layer.e12 + m.e22 * (layer.a + layer.e22))
-    growth = f.growth if m.growth is None else m.growth if f.growth is None else m.growth + f.growth
-    return _renormalised(Matrix(m.a * layer.a, e11, e12, e21, e22, growth))
+def _fill_opaque(
+    station: _Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    places: _Places,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """`_fill_periodic` where a cell's matrix grows: depth by depth, with logarithms."""
+    layers, periods = station.values
+    assert station.matrix is not None
+    assert station.bloch is not None
+    for j, here, tail in _with_tails(layers, omega, kx, places):
+        behind = periods - 1 - places.period[here]
+        state = _power_back(station.matrix, station.bloch, station.far, behind[:, None])
+        if tail is not None:
+            state = _matrix_back(tail, state)
+        p, _, log = _layer_back(state, *_layer(layers, j, omega * omega, kx * kx, places.share[here][:, None]))
+        out[rows[here]] = p * np.exp(log - near_log) * per_incident
 
 
 def _matrix_back(m: Matrix, far: State) -> State:

@@ -30,6 +30,9 @@ Plane = Callable[[np.ndarray], np.ndarray]
 #: A window holds the beam when |p| at its ends is below this share of the level asked for. Not lower: the guided waves of a
 #: lossless slab run on along it without end.
 EDGE = 0.8
+#: Newton's method doubles its digits at each step: after a step this small, in samples, the next would be rounding. The peak
+#: needs half the digits of an edge, for |p| is flat there.
+NEAR_PEAK, NEAR_EDGE = 1e-6, 1e-8
 
 
 class Measures(NamedTuple):
@@ -86,12 +89,22 @@ class Modes(NamedTuple):
     right: np.ndarray
     left: np.ndarray
 
-    def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """p, dp/dx and d2p/dx2 at positions (F, m)."""
-        k = self.line.k[:, None, :]
-        phase = np.exp(1j * k * x[..., None])
-        a, b = self.right[:, None] * phase, self.left[:, None] / phase
-        return (a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1)
+    def at(self, x: np.ndarray, bend: bool = True) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """p, dp/dx and, if asked for, d2p/dx2 at positions (F, m)."""
+        # plain: sums over k of (a + b), i k (a - b), -k^2 (a + b) with a = right e^{ikx}, b = left e^{-ikx}
+        ik = 1j * self.line.k
+        phase = np.exp(ik[:, None] * x[..., None])
+        plus = self.right[:, None] * phase
+        minus = self.left[:, None] / phase
+        difference = plus - minus
+        plus += minus
+        slope = np.einsum("fmk,fk->fm", difference, ik)
+        return plus.sum(-1), slope, np.einsum("fmk,fk->fm", plus, ik * ik) if bend else slope
+
+    def value(self, x: np.ndarray) -> np.ndarray:
+        """p at positions (F, m)."""
+        phase = np.exp(1j * self.line.k[:, None] * x[..., None])
+        return np.einsum("fmk,fk->fm", phase, self.right) + np.einsum("fmk,fk->fm", 1 / phase, self.left)
 
 
 def _modes(s: Scene, beam: Beam, plane: Plane, line: Line) -> Modes:
@@ -177,31 +190,46 @@ def _measured(
     ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
     dx = plan.window / x.shape[-1]
     position = _newton_peak(modal, x[rows, top], dx)
-    peak = np.abs(modal.at(position[:, None])[0][:, 0])
+    peak = np.abs(modal.value(position[:, None])[:, 0])
     edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
     good = (edge < EDGE * level * peak) & (peak > 0)
-    below = valid & (np.abs(p) < level * peak[:, None])
-    index = np.arange(size.shape[-1])
-    left = np.max(np.where(below & (index < top[:, None]), index, -1), axis=-1)
-    right = np.min(np.where(below & (index > top[:, None]), index, index.size), axis=-1)
-    good &= (left >= 0) & (right < index.size)
-    left, right = np.where(good, left, 0), np.where(good, right, index.size - 1)
-    outer = np.stack([x[rows, left], x[rows, right]], axis=-1)
-    inner = np.stack(
-        [
-            np.minimum(x[rows, np.minimum(left + 1, index.size - 1)], position),
-            np.maximum(x[rows, np.maximum(right - 1, 0)], position),
-        ],
-        axis=-1,
-    )
-    edges = _newton_level(modal, inner, outer, level * peak)
+    crossing, found = _crossings(x, np.abs(p), valid, top, position, peak, level)
+    good &= found
+    edges = _newton_level(modal, *crossing, level * peak)
     check = np.concatenate([edges, position[:, None]], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        error = 1.5 * np.max(np.abs(modal.at(check)[0] - second.at(check)[0]), axis=-1) / peak
+        error = 1.5 * np.max(np.abs(modal.value(check) - second.value(check)), axis=-1) / peak
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     good &= np.nan_to_num(error, nan=1.0) <= rtol
     return Measures(edges[:, 1] - edges[:, 0], peak, place), good
+
+
+def _crossings(
+    x: np.ndarray,
+    size: np.ndarray,
+    valid: np.ndarray,
+    top: np.ndarray,
+    position: np.ndarray,
+    peak: np.ndarray,
+    level: float,
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
+    """Points above and below the level on both sides of the peak, a guess between them, (F, 2); and whether they exist, (F,)."""
+    target = level * peak[:, None]
+    below = valid & (size < target)
+    index = np.arange(size.shape[-1])
+    left = np.max(np.where(below & (index < top[:, None]), index, -1), axis=-1)
+    right = np.min(np.where(below & (index > top[:, None]), index, index.size), axis=-1)
+    found = (left >= 0) & (right < index.size)
+    ends = np.stack([np.where(found, left, 0), np.where(found, right, index.size - 1)], axis=-1)
+    beside = np.clip(ends + [1, -1], 0, index.size - 1)
+    outer, inner = np.take_along_axis(x, ends, -1), np.take_along_axis(x, beside, -1)
+    beyond = (inner - position[:, None]) * [1, -1] > 0  # the peak lies between the two samples
+    inner = np.where(beyond, position[:, None], inner)
+    above = np.where(beyond, peak[:, None], np.take_along_axis(size, beside, -1)) ** 2
+    fall = above - np.take_along_axis(size, ends, -1) ** 2
+    share = np.clip((above - target**2) / np.where(fall > 0, fall, 1.0), 0.01, 0.99)
+    return (inner, outer, inner + share * (outer - inner)), found
 
 
 def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
@@ -212,21 +240,27 @@ def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
         first = (p.conj() * slope).real
         curve = np.abs(slope) ** 2 + (p.conj() * bend).real
         step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
-        x = np.clip(x + step, start - dx, start + dx)
+        before, x = x, np.clip(x + step, start - dx, start + dx)
+        if np.all(np.abs(x - before) <= NEAR_PEAK * dx):
+            break
     return x
 
 
-def _newton_level(modal: Modes, inner: np.ndarray, outer: np.ndarray, target: np.ndarray) -> np.ndarray:
+def _newton_level(
+    modal: Modes, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
+) -> np.ndarray:
     """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
-    x = (inner + outer) / 2
+    x, size = guess, np.abs(outer - inner)
     for _ in range(9):
-        p, slope, _ = modal.at(x)
+        p, slope, _ = modal.at(x, bend=False)
         excess = np.abs(p) ** 2 - target[:, None] ** 2
         inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
         steep = 2 * (p.conj() * slope).real
         guess = x - excess / np.where(steep == 0, 1.0, steep)
         low, high = np.minimum(inner, outer), np.maximum(inner, outer)
-        x = np.where((guess >= low) & (guess <= high), guess, (inner + outer) / 2)
+        before, x = x, np.where((guess >= low) & (guess <= high), guess, (inner + outer) / 2)
+        if np.all(np.abs(x - before) <= NEAR_EDGE * size):
+            break
     return x
 
 

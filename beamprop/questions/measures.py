@@ -145,10 +145,14 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
     if not _any_beam(s, beam, face):
         return NO_BEAM
     plane = np.array([s.thickness])
+
+    def transfer(kx: np.ndarray, _: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        return face(kx * (1 + shift))[None]
+
     half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
     for _ in range(7):
         x = beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
-        solution = propagate.choose_line(s, [beam], lambda kx, _: face(kx)[None], x, plane, rtol)
+        solution = propagate.choose_line(s, [beam], transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
