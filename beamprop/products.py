@@ -19,6 +19,10 @@ LARGE = 2**25
 def small_product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """``a @ b`` for (m, k) by (k, n), in pieces that the BLAS does not divide among threads."""
     (m, k), n = a.shape, b.shape[1]
+    if m == 1:  # matrix by vector is divided much sooner than matrix by matrix
+        return small_product(np.concatenate([a, a]), b)[:1]
+    if n == 1:
+        return small_product(a, np.concatenate([b, b], axis=1))[:, :1]
     if m * k * n <= UNTHREADED:
         return a @ b
     out = np.empty((m, n), np.result_type(a, b))

@@ -95,7 +95,8 @@ def _reach(s: Scene, beams: list[Beam], x: np.ndarray, z: np.ndarray, rtol: floa
     extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = max(max(-lo, hi) for lo, hi in bands)
-    return Reach(s.k0, min(s.branches), min(band, _arriving(s, beam.z0, z, tolerance)), max(extent, source), source, path)
+    band = min(band, _arriving(s, beam.z0, z, tolerance))
+    return Reach(s.k0, min(s.branches), band, max(extent, source), source, path)
 
 
 def _arriving(s: Scene, z0: float, z: np.ndarray, tolerance: float) -> float:

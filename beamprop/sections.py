@@ -222,9 +222,9 @@ def _crossings(
     right = np.min(np.where(below & (index > top[:, None]), index, index.size), axis=-1)
     found = (left >= 0) & (right < index.size)
     ends = np.stack([np.where(found, left, 0), np.where(found, right, index.size - 1)], axis=-1)
-    beside = np.clip(ends + [1, -1], 0, index.size - 1)
+    beside = np.clip(ends + np.array([1, -1]), 0, index.size - 1)
     outer, inner = np.take_along_axis(x, ends, -1), np.take_along_axis(x, beside, -1)
-    beyond = (inner - position[:, None]) * [1, -1] > 0  # the peak lies between the two samples
+    beyond = (inner - position[:, None]) * np.array([1, -1]) > 0  # the peak lies between the two samples
     inner = np.where(beyond, position[:, None], inner)
     above = np.where(beyond, peak[:, None], np.take_along_axis(size, beside, -1)) ** 2
     fall = above - np.take_along_axis(size, ends, -1) ** 2

@@ -186,12 +186,21 @@ def amplitudes(line: Line, spectrum: Any, centre: float) -> tuple[np.ndarray, np
     return right * turn, left / turn
 
 
+#: The most exponentials that are held at a time.
+MOST_PHASES = 4_000_000
+
+
 def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p at any x (relative to the centre): one matrix product, (Z, n) by (n, X).
 
     With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
     """
     # plain: h @ (right[:, None] * exp(i k x) + left[:, None] * exp(-i k x))
+    block = max(1, MOST_PHASES // max(1, x.size))
+    if line.k.size > block:
+        parts = [slice(start, start + block) for start in range(0, line.k.size, block)]
+        sums = (direct_sum(Line(line.k[p], line.weight[p]), h[:, p], right[..., p], left[..., p], x) for p in parts)
+        return functools.reduce(np.add, sums)
     forth, back = _phases(line.k, x, bool(np.any(left)))
     if right.ndim == 1 and h.shape[0] > 2:
         both = right[:, None] * forth

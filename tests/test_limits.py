@@ -7,6 +7,7 @@ from oracles import slab_response
 import beamprop as bp
 from beamprop import media, response
 from beamprop.conventions import outgoing_kz
+from beamprop.response import layers
 
 F = 2500.0
 OMEGA = 2 * np.pi * F
@@ -541,14 +542,14 @@ def test_a_single_kx_is_answered_in_the_first_zone():
 def layer_work(monkeypatch, ask):
     """How many numbers the layers' functions are evaluated at while `ask` runs."""
     work = []
-    original = response.entire
+    original = layers.entire
 
     def counted(u):
         work.append(np.size(u))
         return original(u)
 
     with monkeypatch.context() as patch:
-        patch.setattr(response, "entire", counted)
+        patch.setattr(layers, "entire", counted)
         ask()
     return sum(work)
 

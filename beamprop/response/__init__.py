@@ -1,0 +1,20 @@
+"""The exact plane-wave response, on arrays: layer -> cell -> power of a cell -> slab.
+
+Shapes: omega is (F, 1), kx is (F, n) or (n,); leading axes are batch, the last one is kx. Nothing is checked here.
+
+One layer takes the state (p, q), q = (1/rho_z) dp/dz, from its near to its far face by
+
+    [[ C, A s ], [ -B s, C ]],   A = rho_z d,   B = (w^2/K - kx^2/rho_x) d,   u = A B = (kz d)^2,
+    C = cos(sqrt(u)),  s = sin(sqrt(u))/sqrt(u):  entire in u, so kz = 0 is no special case and no branch is chosen.
+
+States are carried BACK from the outgoing wave at the far face, the direction in which the physical solution grows:
+nothing cancels, however thick the slab. What grows is taken out and kept as a logarithm.
+
+layers.py: one layer. cells.py: a cell and its powers. march.py: the way back through a slab. inside.py: the field there.
+slab.py: what is asked of a slab. bloch.py: infinite stacks.
+"""
+
+from .bloch import bloch_wavenumber
+from .slab import Response, dispersion, solve
+
+__all__ = ["Response", "bloch_wavenumber", "dispersion", "solve"]

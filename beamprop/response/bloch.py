@@ -1,0 +1,34 @@
+"""Bloch waves of an infinite stack."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..media import LayerValues
+from .cells import bloch_phase, cell_matrix
+
+
+def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
+    """kz of the Bloch wave that decays, or where none does carries energy, along +z; continuous along kx. (F, n)."""
+    m = cell_matrix(layers, omega, kx)
+    phase = bloch_phase(m).phase
+    ratio = (np.exp(1j * phase - (0.0 if m.growth is None else m.growth)) - m.a - m.e11) / np.where(
+        m.e12 == 0, 1, m.e12
+    )
+    neither = np.abs(phase.imag) <= 1e-11 * (1 + np.abs(phase))
+    phase = np.where(neither, phase.real + 0j, phase)  # rounding decides nothing
+    phase = np.where(neither & ((ratio / 1j).real < 0), -phase, phase)
+    return _unwrapped(phase, kx.real) / layers.thickness.sum()
+
+
+def _unwrapped(phase: np.ndarray, kx: np.ndarray) -> np.ndarray:
+    """Add whole turns so that the real part is continuous along kx, and within half a turn at the kx nearest to 0."""
+    phase = (phase.real + np.pi) % (2 * np.pi) - np.pi + 1j * phase.imag
+    order = np.argsort(kx, axis=-1, kind="stable")
+    real = np.take_along_axis(phase.real, order, -1)
+    turned = np.unwrap(real, axis=-1)
+    anchor = np.argmin(np.abs(np.take_along_axis(kx, order, -1)), axis=-1)[:, None]
+    turned += np.take_along_axis(real, anchor, -1) - np.take_along_axis(turned, anchor, -1)
+    out = np.empty_like(phase)
+    np.put_along_axis(out, order, turned + 1j * np.take_along_axis(phase.imag, order, -1), -1)
+    return out

@@ -1,0 +1,251 @@
+"""The field inside a slab, from the states that the march left at the faces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..media import LayerValues, SegmentValues
+from ..products import small_product
+from .cells import TINY, BlochPhase, Matrix, faded, matrix_back, power_back, times
+from .layers import State, at_frequencies, layer_back, one_layer, terms_for
+from .march import Places, Station, places_of, segment_of
+
+
+def fill_inside(
+    stations: list[Station],
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+) -> np.ndarray:
+    """p at depths z inside the slab per unit incident pressure, (F, Z, n)."""
+    out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
+    owner = segment_of(np.array([s.start for s in stations]), z)
+    for index, station in enumerate(stations):
+        rows = np.flatnonzero(owner == index)
+        if not rows.size:
+            continue
+        places = places_of(station.values, z[rows] - station.start)
+        for i in range(kx.shape[0]):
+            one = _one_frequency(station, i)
+            fill = _fill_single if station.matrix is None else _fill_periodic
+            fill(one, omega[i : i + 1], kx[i : i + 1], places, rows, near_log[i], per_incident[i], out[i])
+    return out
+
+
+def _one_frequency(station: Station, i: int) -> Station:
+    """A station at frequency i alone: leading axis 1."""
+
+    def one(record: Any) -> Any:
+        if record is None:
+            return None
+        return type(record)(*(v[i : i + 1] if isinstance(v, np.ndarray) else v for v in record))
+
+    values = SegmentValues(at_frequencies(station.values.layers, slice(i, i + 1)), station.values.periods)
+    faces = {j: one(state) for j, state in station.faces.items()}
+    return Station(values, one(station.far), one(station.matrix), one(station.bloch), station.start, faces)
+
+
+def _fill_single(
+    station: Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    places: Places,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Fill rows of `out` that lie in a segment of one period: from the state behind each layer, the rest of that layer."""
+    omega2, kx2 = omega * omega, kx * kx
+    for j, here in _by_layer(places):
+        face = station.faces[j]
+        A, B, f = one_layer(station.values.layers, j, omega2, kx2, places.share[here][:, None])
+        scale = np.exp(face.log[0] - near_log) * per_incident
+        p, _, log = layer_back(State(face.p, face.q, np.zeros(1)), A, B, f)
+        out[rows[here]] = p * scale if f.growth is None else p * np.exp(log + face.log - near_log) * per_incident
+
+
+def _by_layer(places: Places) -> Iterator[tuple[int, np.ndarray]]:
+    """Layers that hold depths, and which."""
+    order = np.argsort(places.layer, kind="stable")
+    layers, first = np.unique(places.layer[order], return_index=True)
+    return zip(layers.tolist(), np.split(order, first[1:]), strict=True)
+
+
+def _fill_periodic(
+    station: Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    places: Places,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """Fill rows of `out` that lie in a segment of many periods.
+
+    A depth lies in layer j of some period: whole periods behind it in closed form, then the layers behind j, then the rest
+    of layer j. All of it is linear in the far face's state, so what depends on the period (two factors) and what depends
+    on the place in the cell (two pressures) are made apart, once each, and only multiplied for each depth.
+    """
+    # plain: p(z) = rest of layer j (layers behind j (power_back(far, periods behind)))
+    layers, periods = station.values
+    m, b, far = station.matrix, station.bloch, station.far
+    assert m is not None
+    assert b is not None
+    if m.growth is not None:
+        return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
+    behind, which = _counts(periods - 1 - places.period)
+    g, f = _factors(b, behind, far.log[0] - near_log, per_incident)
+    moved = _moved(m, b, far)
+    for j, here, tail in _with_tails(layers, omega, kx, places):
+        both = [state if tail is None else matrix_back(tail, state) for state in (far, moved)]
+        one, two = _rest_of_layer(layers, j, omega, kx, both, places.share[here])
+        row = which[here]
+        one *= g[row]
+        two *= f[row]
+        one += two
+        out[rows[here]] = one
+
+
+def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
+    """(M^-1 - I) far, of +-M: what `power_back` multiplies by f."""
+    sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
+    p = sign * (m.e22 * far.p - m.e12 * far.q) - twice * far.p
+    q = sign * (m.e11 * far.q - m.e21 * far.p) - twice * far.q
+    return State(p, q, far.log)
+
+
+def _factors(b: BlochPhase, behind: np.ndarray, log: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """g and f of `power_back` for sorted counts of periods, times exp(log - i phase count) scale: (len(behind), n)."""
+    # plain: x2n = expm1(2i reduced count), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced)
+    reduced, phase = b.reduced[0], b.phase[0]
+    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
+    edge = np.abs(x2) < TINY
+    x2n = _expm1_table(2j * reduced, behind)
+    outer = _exp_table(log, -1j * phase, behind)
+    outer *= scale
+    f = np.where(edge, behind[:, None], x2n) if np.any(edge) else x2n.copy()
+    f *= lam / np.where(edge, 1.0, x2)
+    f *= outer
+    g = x2n
+    g += 1 + lam
+    g /= 1 + lam
+    g *= outer
+    return g, f
+
+
+#: From how many periods on their powers are products of two small tables, and the step between the entries of the coarse one.
+TABLE, STEP = 48, 16
+
+
+def _counts(behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Numbers of periods to make factors for, sorted, and where each of `behind` stands among them.
+
+    Where they lie dense, all between the first and the last: tables need no look-up then.
+    """
+    counts, which = np.unique(behind, return_inverse=True)
+    span = int(counts[-1] - counts[0]) + 1
+    if counts.size < TABLE or span > 2 * counts.size:
+        return counts, which
+    return np.arange(counts[0], counts[0] + -(-span // STEP) * STEP), behind - counts[0]
+
+
+def _dense(counts: np.ndarray) -> bool:
+    return counts.size >= TABLE and int(counts[-1] - counts[0]) == counts.size - 1 and counts.size % STEP == 0
+
+
+def _expm1_table(y: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """expm1(counts y) for Re y <= 0: (len(counts), n)."""
+    if not _dense(counts):
+        return np.expm1(faded(np.multiply.outer(counts, y)))
+    one = np.expm1(faded(np.multiply.outer(counts[::STEP], y)))[:, None]
+    two = np.expm1(faded(np.multiply.outer(np.arange(STEP), y)))
+    out = one * two
+    out += one
+    out += two
+    return out.reshape(counts.size, -1)
+
+
+def _exp_table(log: np.ndarray, y: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """exp(log + counts y): (len(counts), n), 0 where it is below 1e-282."""
+    if not _dense(counts) or float(np.max(np.abs(y.real))) * STEP > 300:  # a factor could overflow on its own
+        return np.exp(_faint(log + np.multiply.outer(counts, y)))
+    coarse = np.exp(_faint(log + np.multiply.outer(counts[::STEP], y)))
+    fine = np.exp(np.multiply.outer(np.arange(STEP), y))
+    return (coarse[:, None] * fine).reshape(counts.size, -1)
+
+
+def _faint(exponent: np.ndarray) -> np.ndarray:
+    """Exponents below -650 moved to -inf, in place: no denormal numbers."""
+    exponent[exponent.real < -650] = -np.inf
+    return exponent
+
+
+def _with_tails(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places
+) -> Iterator[tuple[int, np.ndarray, Matrix | None]]:
+    """Layers that hold depths, which, and the matrix of the layers behind them in the cell."""
+    omega2, kx2 = omega * omega, kx * kx
+    holding = dict(_by_layer(places))
+    tail: Matrix | None = None
+    for j in reversed(range(min(holding), len(layers.thickness))):
+        if j in holding:
+            yield j, holding[j], tail
+        if j > min(holding):
+            A, B, f = one_layer(layers, j, omega2, kx2)
+            layer = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
+            tail = layer if tail is None else times(layer, tail)
+
+
+def _rest_of_layer(
+    layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, faces: list[State], share: np.ndarray
+) -> list[np.ndarray]:
+    """Pressures in layer j in front of given states at its far face, `share` of its thickness away: (Z, n) each."""
+    omega2, kx2 = omega * omega, kx * kx
+    A, B, whole = one_layer(layers, j, omega2, kx2)
+    u = A * B
+    size = float(np.max(np.abs(u)))
+    if size >= 0.5 or whole.growth is not None or share.size < 8:
+        A, B, f = one_layer(layers, j, omega2, kx2, share[:, None])
+        return [layer_back(face, A, B, f).p * np.ones((share.size, 1)) for face in faces]
+    # cos and sin as powers of share: p = p_far (1 - u s^2/2! + ...) - A q_far (s - u s^3/3! + ...)
+    terms = terms_for(size) + 1
+    powers = share[:, None] ** np.arange(2 * terms)
+    series = np.cumprod(np.concatenate([np.ones_like(u), np.repeat(-u, terms - 1, axis=0)]), axis=0)
+    even = series / np.array([math.factorial(2 * k) for k in range(terms)])[:, None]
+    odd = series * -A / np.array([math.factorial(2 * k + 1) for k in range(terms)])[:, None]
+    out = []
+    for face in faces:
+        coefficients = np.stack([even * face.p, odd * face.q], axis=1).reshape(2 * terms, -1)
+        out.append(small_product(powers, coefficients.view(float)).view(complex))
+    return out
+
+
+def _fill_opaque(
+    station: Station,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    places: Places,
+    rows: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    out: np.ndarray,
+) -> None:
+    """`_fill_periodic` where a cell's matrix grows: depth by depth, with logarithms."""
+    layers, periods = station.values
+    assert station.matrix is not None
+    assert station.bloch is not None
+    for j, here, tail in _with_tails(layers, omega, kx, places):
+        behind = periods - 1 - places.period[here]
+        state = power_back(station.matrix, station.bloch, station.far, behind[:, None])
+        if tail is not None:
+            state = matrix_back(tail, state)
+        p, _, log = layer_back(state, *one_layer(layers, j, omega * omega, kx * kx, places.share[here][:, None]))
+        out[rows[here]] = p * np.exp(log - near_log) * per_incident

@@ -1,0 +1,126 @@
+"""A slab: r, t, the field inside, and the function whose zeros are its guided modes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..conventions import outgoing_kz
+from ..media import FluidValues, SegmentValues
+from .inside import fill_inside
+from .layers import State
+from .march import Station, march
+
+
+class Response(NamedTuple):
+    """r and t at the faces, and p(z) / (incident p at the near face) at the asked depths, (F, Z, n)."""
+
+    r: np.ndarray
+    t: np.ndarray
+    inside: np.ndarray
+
+
+def _near(
+    segments: list[SegmentValues],
+    front: FluidValues,
+    behind: FluidValues,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray,
+) -> tuple[np.ndarray, State, list[Station]]:
+    """kz in front, and the state at the near face that leaves a unit outgoing wave behind."""
+    kz1 = outgoing_kz(kx, omega, *front)
+    kz2 = outgoing_kz(kx, omega, *behind)
+    exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
+    near, stations = march(segments, omega, kx, exit_state, z)
+    return kz1, near, stations
+
+
+def dispersion(
+    segments: list[SegmentValues], before: FluidValues, after: FluidValues, omega: np.ndarray, kx: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The function whose zeros in kx are the guided modes, as (value, logarithm): value exp(logarithm). (F, n) each.
+
+    It is the incident amplitude that a unit outgoing wave behind the slab needs, times 2 i kz: the denominator of r and t.
+    """
+    front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
+    kz1, near, _ = _near(segments, front, behind, omega, kx, np.empty(0))
+    return 1j * kz1 * near.p + front.rho_z * near.q, near.log
+
+
+def solve(
+    segments: list[SegmentValues],
+    before: FluidValues,
+    after: FluidValues,
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray | None = None,
+) -> Response:
+    """Response of a slab to a plane wave of unit pressure at the near face.
+
+    Parameters
+    ----------
+    segments : from `media.slab_values`, F frequencies
+    before, after : properties of the half-spaces, arrays (F,)
+    omega : (F, 1), rad/s
+    kx : (F, n) complex, rad/m
+    z : (Z,) depths inside the slab [m], or None
+
+    Returns
+    -------
+    Response
+    """
+    kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex)
+    front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
+    z = np.empty(0) if z is None else np.asarray(z, float)
+    kz1, near, stations = _near(segments, front, behind, omega, kx, z)
+    forward, backward = 1j * kz1 * near.p + front.rho_z * near.q, 1j * kz1 * near.p - front.rho_z * near.q
+    size = 2j * kz1
+    grazing = kz1 == 0
+    if np.any(grazing):
+        forward, backward, size = _grazing(near, grazing, forward, backward, size, front, behind, segments, omega)
+    with np.errstate(under="ignore", over="ignore"):
+        per_incident = size / forward
+        t = per_incident * np.exp(-near.log)
+        r = backward / forward
+        opaque = _has_vanishing_layer(segments) & (kx != 0)
+        t = np.where(opaque, 0.0, t)
+        inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
+        if z.size:
+            inside = fill_inside(stations, omega, kx, z, near.log, per_incident)
+    return Response(r, t, inside)
+
+
+def _has_vanishing_layer(segments: list[SegmentValues]) -> np.ndarray:
+    """(F, 1): whether some layer has an isotropic density of exactly zero."""
+    return np.any([np.any(s.layers.vanishing, axis=0) for s in segments], axis=0)[:, None]
+
+
+def _grazing(
+    near: State,
+    grazing: np.ndarray,
+    forward: np.ndarray,
+    backward: np.ndarray,
+    size: np.ndarray,
+    front: FluidValues,
+    behind: FluidValues,
+    segments: list[SegmentValues],
+    omega: np.ndarray,
+) -> tuple:
+    """r and t at kz_before = 0 exactly, where both may be 0/0.
+
+    In general q at the near face is not zero and r = -1, t = 0 come out by themselves. Where q vanishes with kz (no
+    slab, or one matched at grazing, with equal half-spaces) the matrix is [[P, .], [0, 1/P]] and
+    ``t = 2/(P + 1/P)``, ``r = (P - 1/P)/(P + 1/P)``. q counts as zero when it is no more than rounding.
+    """
+    rounding = sum(s.periods * np.abs(s.layers.compliance).sum(axis=0) for s in segments)[:, None] * omega**2
+    equal = np.all([np.equal(a, b) for a, b in zip(front, behind, strict=True)], axis=0)
+    zero = grazing & equal & (np.abs(near.q) <= 1e-12 * rounding * np.abs(near.p))
+    with np.errstate(over="ignore"):
+        inverse = np.where(zero, np.exp(-2 * near.log) / np.where(near.p == 0, 1.0, near.p), 0)
+    return (
+        np.where(zero, near.p + inverse, forward),
+        np.where(zero, near.p - inverse, backward),
+        np.where(zero, 2.0, size),
+    )

@@ -1,0 +1,153 @@
+"""rtol is a promise: random cases against an independent quadrature, limits of small loss, and nothing that is not finite."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import beamprop as bp
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
+
+import accuracy
+
+F = 2500.0
+#: Numbers of the study's cases, four of each kind of slab: the first whose truth takes about a second or less.
+CASES = [
+    (0, 15, 30, 45), (1, 16, 46, 61), (17, 47, 62, 77), (18, 48, 123, 138), (4, 19, 34, 49), (5, 20, 35, 50), (6, 21, 51, 66),
+    (7, 22, 37, 67), (8, 23, 53, 68), (9, 24, 39, 54), (10, 40, 70, 115), (56, 86, 101, 116), (42, 117, 132, 147),
+    (13, 43, 58, 73), (14, 29, 44, 59),
+]  # fmt: skip
+AIR_BULK = bp.AIR.bulk_modulus
+
+
+# --- the study, shortened ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", list(accuracy.SLABS))
+def test_four_cases_of_each_kind(kind):
+    """No error above rtol without a warning; no estimate below a third of the error. Few are without a truth."""
+    rows = [accuracy.judge(n) for n in CASES[list(accuracy.SLABS).index(kind)]]
+    assert {r["kind"] for r in rows} == {kind}
+    judged = [r for r in rows if r["status"] == "answered"]
+    assert len(judged) >= 3
+    assert all(r["status"] in ("answered", "refused", "no truth") for r in rows), rows
+    for r in judged:
+        assert not r["reason"], r
+        error = r["error"] - r["truth_error"]
+        assert error <= r["rtol"] or r["warned"], r
+        assert error <= 3 * r["estimate"], r
+
+
+# --- limits of small loss ---------------------------------------------------------------------------------
+
+
+def test_limiting_absorption():
+    """The paper's slab with less and less loss tends to the lossless one, linearly, at 2000 and 2400 Hz."""
+    apart = accuracy.limiting_absorption().apart.values
+    assert apart[0].max() < 0.5
+    np.testing.assert_allclose(apart[2:-1] / apart[3:], 10, rtol=0.02)
+    np.testing.assert_allclose(apart[-2] / apart[-1], 10, rtol=2e-3)
+
+
+def backward_medium(loss):
+    """A thin layer of density -0.5 that of air, which guides a backward wave."""
+    return bp.Slab.uniform(bp.Fluid(1.25 * (-0.5 + 0.5j * loss), AIR_BULK * (1 - 1j * loss)), 0.007)
+
+
+def test_a_backward_mode_is_the_limit_of_small_losses():
+    """Linear convergence; without the circle around the pole the field would be off by much more than the least loss."""
+    beam = bp.GaussianBeam(0.03, 40.0, z0=-0.02)
+    x, z = np.linspace(-0.5, 0.5, 41), np.array([-0.02, 0.0, 0.0035, 0.007, 0.03])
+    modes = bp.guided_modes(backward_medium(0.0), F)
+    assert -1 in modes.direction.values
+    limit = bp.field(backward_medium(0.0), beam, F, x, z, rtol=1e-10).p.values
+    apart = [
+        np.abs(bp.field(backward_medium(loss), beam, F, x, z, rtol=1e-10).p.values - limit).max() / np.abs(limit).max()
+        for loss in (1e-3, 1e-4, 1e-5, 1e-6)
+    ]
+    np.testing.assert_allclose(np.array(apart[1:-1]) / apart[2:], 10, rtol=0.02)
+    assert apart[-1] < 1e-4
+
+
+def test_more_backward_modes_than_can_be_told_are_refused():
+    """Case 33, 100 000 lossless periods that guide backward waves without number: ValueError by name, and soon."""
+    case = accuracy.make_case(33)
+    with pytest.raises(ValueError, match="backward waves"):
+        bp.field(case.slab, case.beam, case.frequency, case.x, case.z, rtol=case.rtol)
+
+
+# --- sources ----------------------------------------------------------------------------------------------
+
+
+def test_slits_launched_in_front_keep_rtol():
+    """The spectrum of a sharp edge falls as 1/kx, but waves beyond k0 decay on the way: any rtol is reachable."""
+    slits = bp.Slits(0.05, 0.1, 2, z0=-0.05)
+    x, z = np.linspace(-0.5, 0.5, 51), np.array([0.0, 0.1, 0.5])
+    slab = bp.Slab.uniform(bp.Fluid(2.0, 2e5), 0.05)
+    rough, fine = (bp.field(slab, slits, F, x, z, rtol=rtol) for rtol in (1e-4, 1e-10))
+    difference = np.abs(rough.p - fine.p).max("x") / np.abs(fine.p).max("x")
+    assert difference.max() < 1e-4
+    assert float(fine.error_estimate) < 1e-10
+
+
+def test_slits_on_their_own_plane_are_refused():
+    """On the launch plane itself nothing decays: |S| falls as 1/kx, and rtol = 1e-3 would take millions of waves."""
+    with pytest.raises(ValueError, match="plane waves"):
+        bp.field(bp.Slab.uniform(bp.AIR, 0.1), bp.Slits(0.05, 0.1), F, np.linspace(-0.2, 0.2, 9), [0.0, 0.1], rtol=1e-3)
+
+
+def test_fields_of_many_waves_and_points_take_bounded_memory():
+    """100 000 waves on 2048 points: the matrix of their phases, 3 GB, is never whole."""
+    from beamprop import spectral
+
+    k = np.linspace(0, 100, 5000).astype(complex)
+    x = np.linspace(-1, 1, 999)
+    h, right = np.exp(-k)[None], np.exp(-k / 10)
+    line = spectral.Line(k, np.ones(k.size))
+    whole = (h * right) @ np.exp(1j * np.outer(k, x)) + (h * right) @ np.exp(-1j * np.outer(k, x))
+    np.testing.assert_allclose(spectral.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
+
+
+# --- nothing that is not finite ---------------------------------------------------------------------------
+
+
+def random_slab(rng):
+    """Any of: uniform or modulated, positive, negative or zero density, thin or thick, other half-spaces."""
+
+    def density():
+        size = np.exp(rng.uniform(-6, 6)) * rng.choice([1, 1, 1, -1])
+        return (
+            0.0
+            if rng.random() < 0.05
+            else 1.25 * complex(size, rng.choice([0, abs(size) * np.exp(rng.uniform(-8, 0))]))
+        )
+
+    def fluid():
+        K = AIR_BULK * np.exp(rng.uniform(-3, 5)) * rng.choice([1, 1, 1, -1])
+        return bp.Fluid(density(), K) if rng.random() < 0.8 else bp.Fluid(density() or 1.0, K, density_x=np.inf)
+
+    water = bp.Fluid.from_speed(1000.0, 1480.0)
+    before, after = (water if rng.random() < 0.2 else bp.AIR for _ in range(2))
+    if rng.random() < 0.3:
+        loss = rng.choice([0, np.exp(rng.uniform(-9, 0))])
+        cell = bp.lmmd_cell(rng.uniform(-1, 1) + 1j * loss, loss / 2, int(rng.integers(2, 15)), 1 / rng.uniform(2, 100))
+        return bp.Slab(cell, int(np.exp(rng.uniform(0, 14))), before, after)
+    layers = [bp.Layer(fluid(), np.exp(rng.uniform(-20, 7))) for _ in range(rng.integers(1, 5))]
+    return bp.Slab(layers, int(np.exp(rng.uniform(0, 10))), before, after)
+
+
+def test_a_hundred_thousand_plane_waves():
+    """No nan, no infinity, no floating-point error but underflow, from kx = 0 to 1000 k0."""
+    rng = np.random.default_rng(5)
+    count = 0
+    with np.errstate(all="raise", under="ignore"):
+        for _ in range(500):
+            slab, f = random_slab(rng), rng.uniform(100, 10_000)
+            ratio = np.concatenate([[0.0, 1.0], rng.uniform(0, 2, 98), np.exp(rng.uniform(-7, np.log(1e3), 100))])
+            ds = bp.scattering(slab, f, kx_over_k0=ratio)
+            for name in ("r", "t", "transmissivity", "reflectivity"):
+                assert np.all(np.isfinite(ds[name])), (slab, f, name)
+            count += ratio.size
+    assert count == 100_000

@@ -1,0 +1,276 @@
+"""The fast kernels against the plain formulas that stand above them in their comments, over random cases."""
+
+import math
+
+import numpy as np
+import pytest
+
+import beamprop as bp
+from beamprop import products, response, scene, sections, spectral
+from beamprop.media import layer_values
+from beamprop.response import cells, inside, march
+from beamprop.response import layers as one
+
+SEEDS = range(12)
+RTOL = 1e-13
+
+
+def close(found, wanted, rtol=RTOL, axis=None):
+    """Largest difference over the largest wanted value (along an axis)."""
+    scale = np.max(np.abs(wanted), axis=axis, keepdims=True)
+    assert np.all(np.isfinite(found))
+    assert np.max(np.abs(found - wanted) / np.where(scale > 0, scale, 1)) < rtol
+
+
+def random_cell(rng):
+    """Thin layers of both signs of density, an odd or even number of them."""
+    layers = [
+        bp.Layer(
+            bp.Fluid(rng.normal(0, 40) + 0.1j * rng.random(), 1.5e5 * (0.5 + rng.random()), active=True),
+            1e-4 * (1 + 4 * rng.random()),
+        )
+        for _ in range(rng.integers(1, 17))
+    ]
+    return bp.Cell(tuple(layers))
+
+
+def random_slab(rng):
+    """Two periodic segments about an aperiodic one, with thick layers and with thin ones."""
+    thick = bp.Cell(tuple(bp.Layer(bp.Fluid(1 + rng.random() + 0.05j, 1.2e5), 0.02 * rng.random()) for _ in range(30)))
+    return (
+        bp.Slab(random_cell(rng), int(rng.integers(2, 200)))
+        + bp.Slab(thick)
+        + bp.Slab(bp.lmmd_cell(0.05 + 0.2j * rng.random(), 0.0), int(rng.integers(2, 100)))
+    )
+
+
+def random_kx(rng, count, frequencies=1):
+    return 90 * rng.random((frequencies, count)) - 2j * rng.random((frequencies, 1))
+
+
+# --- cells ------------------------------------------------------------------------------------------------
+
+
+def plain_layer(A, B, dtype=np.clongdouble):
+    """[[C, A s], [-B s, C]] by square root, cosine and sine."""
+    A, B = A.astype(dtype), B.astype(dtype)
+    w = np.sqrt(A * B)
+    C, s = np.cos(w), np.sin(w) / w
+    return np.array([[C, A * s], [-B * s, C]])
+
+
+def plain_cell(layers, omega, kx):
+    """Layer after layer, from the near side on: (2, 2, F, n)."""
+    m = None
+    for mass, compliance, mobility in zip(layers.mass, layers.compliance, layers.mobility, strict=True):
+        B = omega**2 * compliance[:, None] - kx**2 * mobility[:, None]
+        layer = plain_layer(np.broadcast_to(mass[:, None], B.shape), B)
+        m = layer if m is None else np.einsum("ijfn,jkfn->ikfn", layer, m)
+    return m
+
+
+@pytest.mark.parametrize("size", [1e-6, 1e-2, 0.3, 0.99, 5.0, 300.0])
+def test_entire_functions(size):
+    rng = np.random.default_rng(1)
+    u = size * rng.random(200) * np.exp(2j * np.pi * rng.random(200))
+    root = np.sqrt(u.astype(np.clongdouble))
+    f = one.entire(u)
+    np.testing.assert_allclose(np.asarray(f.c, complex), (-2 * np.sin(root / 2) ** 2).astype(complex), rtol=RTOL)
+    np.testing.assert_allclose(f.s, (np.sin(root) / root).astype(complex), rtol=RTOL, atol=1e-15)
+
+
+@pytest.mark.parametrize("count", [5, 300])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_cell_matrix(seed, count):
+    """Few kx go through the product of all layers, many through the polynomial."""
+    rng = np.random.default_rng(seed)
+    frequency = np.array([1500.0, 2500.0, 3100.0])
+    layers, omega = layer_values(random_cell(rng), frequency), 2 * np.pi * frequency[:, None]
+    kx = random_kx(rng, count, 3)
+    m = cells.cell_matrix(layers, omega, kx)
+    wanted = plain_cell(layers, omega, kx)
+    assert m.growth is None
+    for found, (i, j) in zip(m[1:5], ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
+        close(found, (wanted[i, j] - (i == j)).astype(complex), axis=-1)
+
+
+def test_the_polynomial_serves_the_papers_cell_and_refuses_a_thick_one():
+    frequency = np.array([2500.0])
+    omega, kx2 = 2 * np.pi * frequency[:, None], np.linspace(0, 200, 300)[None] ** 2 + 0j
+    assert cells._fitted(layer_values(bp.lmmd_cell(), frequency), omega, kx2) is not None
+    assert cells._fitted(layer_values(bp.lmmd_cell(eta=0.5), frequency), omega, kx2) is None
+    assert cells._fitted(layer_values(bp.lmmd_cell(), frequency), omega, 900 * kx2) is None
+
+
+# --- the march and the field inside -----------------------------------------------------------------------
+
+
+def plain_march(segments, omega, kx, state, depths):
+    """States at the near face and in front of it all p at depths: one layer after another, all periods."""
+    layers = [(s.layers, j) for s in segments for _ in range(s.periods) for j in range(len(s.layers.thickness))]
+    stop = sum(s.periods * s.layers.thickness.sum() for s in segments)
+    p = np.empty((len(depths), kx.shape[1]), complex)
+    for values, j in reversed(layers):
+        d = values.thickness[j]
+        here = np.flatnonzero((depths <= stop) & (depths > stop - d))
+        for i in here:
+            part = plain_back(values, j, omega, kx, state, (stop - depths[i]) / d)
+            p[i] = (part[0] * np.exp(part[2]))[0]
+        state = plain_back(values, j, omega, kx, state, 1.0)
+        size = np.abs(state[0]) + np.abs(state[1])
+        state = (state[0] / size, state[1] / size, state[2] + np.log(size))
+        stop -= d
+    return state, p
+
+
+def plain_back(layers, j, omega, kx, state, share):
+    A = layers.mass[j][:, None] * share
+    B = (omega**2 * layers.compliance[j][:, None] - kx**2 * layers.mobility[j][:, None]) * share
+    (a, b), (c, d) = plain_layer(np.broadcast_to(A, B.shape), B) if share > 0 else np.eye(2)
+    return d * state[0] - b * state[1], a * state[1] - c * state[0], state[2]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_field_inside_against_all_layers_in_turn(seed):
+    rng = np.random.default_rng(seed)
+    s = scene.scene(random_slab(rng), 2500.0)
+    kx = random_kx(rng, 40)
+    z = np.sort(s.thickness * rng.random(150))
+    found = response.solve(s.segments, s.before, s.after, s.omega, kx, z)
+    kz = np.sqrt(s.k0**2 - kx.astype(np.clongdouble) ** 2)
+    kz = np.where(kz.imag < 0, -kz, kz)
+    rho = s.after.rho_z[0]
+    near, p = plain_march(s.segments, s.omega, kx, (1 + 0 * kz, 1j * kz / rho, 0 * kz.real), z)
+    forward = (near[0] + near[1] * rho / (1j * kz)) / 2 * np.exp(near[2])
+    clear = np.abs(kz[0]) > 1
+    close(found.inside[0][:, clear], (p / forward[0])[:, clear].astype(complex), rtol=1e-9, axis=0)
+
+
+@pytest.mark.parametrize("lossless", [False, True])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_periods_by_tables_against_the_closed_form(seed, lossless):
+    rng = np.random.default_rng(seed)
+    cell = bp.lmmd_cell(0.05, 0.0) if lossless else bp.lmmd_cell()
+    layers, omega = layer_values(cell, np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
+    kx = random_kx(rng, 60)
+    m = cells.cell_matrix(layers, omega, kx)
+    b = cells.bloch_phase(m)
+    far = one.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
+    counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 4), 200))
+    g, f = inside._factors(b, counts, np.zeros(60), np.ones(60))
+    moved = inside._moved(m, b, far)
+    plain = cells.power_back(m, b, far, counts[:, None])
+    scale = np.exp(plain.log)
+    close(g * far.p[0] + f * moved.p[0], plain.p * scale, rtol=3e-13, axis=0)
+    close(g * far.q[0] + f * moved.q[0], plain.q * scale, rtol=3e-13, axis=0)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_rest_of_a_layer_as_powers_of_the_share(seed):
+    rng = np.random.default_rng(seed)
+    layers, omega = layer_values(random_cell(rng), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
+    kx, share = random_kx(rng, 40), rng.random(30)
+    faces = [one.State(rng.random((1, 40)) + 0j, rng.random((1, 40)) * 1j, np.zeros(1)) for _ in range(2)]
+    found = inside._rest_of_layer(layers, 0, omega, kx, faces, share)
+    for p, face in zip(found, faces, strict=True):
+        wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
+        close(p, np.array(wanted).astype(complex))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_layers_in_blocks_against_one_by_one(seed):
+    rng = np.random.default_rng(seed)
+    thick = [bp.Layer(bp.Fluid(1 + rng.random(), 1e5), 10 ** rng.uniform(-4, -0.3)) for _ in range(40)]
+    layers, omega = layer_values(bp.Cell(tuple(thick)), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
+    kx = random_kx(rng, 30)
+    state = one.State(np.ones_like(kx), 20j + 0 * kx, np.zeros(kx.shape))
+    found, faces = march._through_layers(layers, omega, kx, state, {3, 17})
+    for j in reversed(range(40)):
+        if j in faces:
+            close(faces[j].p / faces[j].q, state.p / state.q, rtol=1e-9)
+        state = one.layer_back(state, *one.one_layer(layers, j, omega**2, kx**2))
+        state = one.normalised(state)
+    assert set(faces) == {3, 17}
+    np.testing.assert_allclose(found.log, state.log, rtol=1e-12, atol=1e-12)
+    close(found.p, state.p, rtol=1e-11)
+
+
+# --- sums -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("shape", [(1, 3, 2), (7, 146, 72), (300, 20, 500), (4, 7, 20_000), (40, 3000, 30)])
+def test_products_in_pieces(shape):
+    rng = np.random.default_rng(3)
+    a, b = rng.normal(size=shape[:2]) + 1j, rng.normal(size=shape[1:]) - 2j
+    close(products.small_product(a, b), a @ b)
+    close(products.product(a, b), a @ b)
+    close(products.small_product(a.real, b), a.real @ b)
+
+
+def random_sum(rng):
+    n = int(rng.choice([8, 30, 64, 144, 400]))
+    size, first = int(rng.integers(1, 3 * n)), -int(rng.integers(0, 40))
+    dx = 0.01
+    step = 2 * np.pi / (n * dx)
+    k = step * (first + np.arange(size)) - 0.7j
+    x = rng.uniform(-1, 0) + dx * np.arange(rng.integers(1, n + 1))
+    line = spectral.Line(k, np.ones(size), step, first, 0.7, 1.0)
+    h, right, left = (
+        rng.normal(size=s) + 1j * rng.normal(size=s) for s in ((int(rng.integers(1, 90)), size), size, size)
+    )
+    return line, h, right, left * rng.integers(0, 2), x, n
+
+
+def plain_sum(line, h, right, left, x):
+    phase = np.exp(1j * np.multiply.outer(line.k, x))
+    return h @ (right[:, None] * phase + left[:, None] / phase)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_sums_over_a_line(seed):
+    rng = np.random.default_rng(seed)
+    line, h, right, left, x, n = random_sum(rng)
+    wanted = plain_sum(line, h, right, left, x)
+    scale = math.sqrt(line.k.size) * np.abs(h).max() * np.exp(0.7)
+    phases = np.abs(line.k).max() * np.abs(x).max()  # whose rounding no order of sums avoids
+    assert np.abs(spectral.fft_sum(line, h, right, left, x, n) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+    assert np.abs(spectral.direct_sum(line, h, right, left, x) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_many_beams_at_once(seed):
+    rng = np.random.default_rng(seed)
+    line, h, right, left, x, n = random_sum(rng)
+    rights, lefts = np.stack([right, 2j * right, right * right]), np.stack([left, left * 0, 3 * left])
+    each = zip(rights, lefts, strict=True)
+    wanted = np.stack([spectral.direct_sum(line, h, a, b, x) for a, b in each])
+    close(spectral.direct_sum(line, h, rights, lefts, x), wanted, rtol=1e-11)
+    close(spectral.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
+
+
+def test_fast_lengths():
+    lengths = sorted(2**a * 3**b * 5**c for a in range(13) for b in range(9) for c in range(6))
+    for n in (1, 2, 7, 11, 97, 1025, 1331, 2049, 4000):
+        assert spectral.fast_length(n) == min(m for m in lengths if m >= n)
+
+
+# --- widths -----------------------------------------------------------------------------------------------
+
+
+def random_modes(rng):
+    k = np.sort(60 * rng.random((3, 50)), axis=-1) - 1j
+    right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
+    return sections.Modes(spectral.Line(k, np.ones(k.shape)), right, left)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_profile_and_its_slopes(seed):
+    rng = np.random.default_rng(seed)
+    modal, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
+    k = modal.line.k[:, None]
+    a = modal.right[:, None] * np.exp(1j * k * x[..., None])
+    b = modal.left[:, None] * np.exp(-1j * k * x[..., None])
+    wanted = ((a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1))
+    for found, want in zip(modal.at(x), wanted, strict=True):
+        close(found, want)
+    close(modal.value(x), wanted[0])
