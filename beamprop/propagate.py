@@ -267,12 +267,14 @@ def _difference(s: Scene, checks: _Checks, one: Line, two: Line) -> tuple[np.nda
     errors, edges = [], []
     for beam in checks.beams:
         a, b = (point_sum(s, beam, line, h, checks.x) for line, h in ((one, h1), (two, h2)))
-        largest = np.max(np.abs(a), axis=1)
+        largest = np.minimum(*(np.max(np.abs(v), axis=1) for v in (a, b)))
         seen = largest > 1e-290
         scale = np.where(seen, largest, 1.0)
         edge = _beyond(s, beam, two, h2) if beam.entire else np.zeros(largest.shape)
         with np.errstate(invalid="ignore", over="ignore"):
             error = np.max(np.abs(a - b), axis=1) / scale
+            if beam.entire:
+                error += _cut_off(s, beam, one, h1, float(np.max(np.abs(checks.x - beam.centre)))) / scale
         errors.append(np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0)))
         edges.append(np.max(np.where(seen, edge / scale, 0.0)))
     return np.maximum(np.array(errors), 4 * spectral.EPS), float(max(edges))
@@ -286,6 +288,26 @@ def _beyond(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> np.ndarray:
     last, before = size[:, -tenth:].sum(axis=1), size[:, -2 * tenth : -tenth].sum(axis=1)
     ratio = np.clip(last / np.maximum(before, 1e-300), 0.0, 0.95)
     return 2 * last * ratio / (1 - ratio)
+
+
+def _cut_off(s: Scene, beam: Beam, line: Line, h: np.ndarray, extent: float) -> np.ndarray:
+    """Size of what is missing where a spectrum ends inside a line (samples too coarse for their profile), plane by plane.
+
+    |w S h e^{ikx}| at the last node, times the nodes that would fit between it and the real axis, where the cut is defined.
+    """
+    missing = np.zeros(h.shape[0])
+    for side, amplitude in zip(
+        (1, -1), spectral.amplitudes(line, lambda k: beam.spectrum(k, s.k0), beam.centre), strict=True
+    ):
+        used = np.flatnonzero(amplitude)
+        if used.size < 2:
+            continue
+        j = used[-1]
+        k, step = line.k[j], max(abs(line.k[j] - line.k[j - 1]), 1e-300)
+        if not beam.spectrum(side * (k + 2 * step * np.arange(1, 3)), s.k0).any():
+            depth = abs(k.imag)
+            missing += np.abs(amplitude[j] * h[:, j]) * (1 + depth / step) * math.exp(min(depth * extent, 100.0))
+    return missing
 
 
 def point_sum(s: Scene, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -137,15 +137,14 @@ def starts(options: argparse.Namespace) -> list[Row]:
     bare = "-c", "pass"
     repeats = max(3, options.repeats // 2)
     imports = "import numpy, xarray, pyfftw, matplotlib; matplotlib.use('agg'); import matplotlib.pyplot"
-    width = ("-m", "beamprop.cli", "width", "--output", str(options.output / "w.nc"))
-    width += ("--plot", str(options.output / "w.png"))
+    width = ("width", "--output", str(options.output / "w.nc"), "--plot", str(options.output / "w.png"))
     command = "from beamprop.cli import main; main()"
     works = [
         process(*bare),
         process("-c", "import beamprop"),
         process("-c", command, "--help"),
         process("-c", imports),
-        process("-c", command, *width[2:]),
+        process("-c", command, *width),
     ]
     python, load, help_text, limit, ours = measure(*works, repeats=repeats)
     return [
