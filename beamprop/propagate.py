@@ -174,6 +174,8 @@ def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solu
     shrinks = 2 if modes.is_lossless(s) else 6  # on the axis itself their number does not fall
     in_vain = 0
     for _ in range(ATTEMPTS):
+        if plan.other().band * plan.other().window > 2 * np.pi * MOST_MODES:
+            break
         if plan.band > searched:
             searched = 1.15 * plan.band
             found = modes.between(s, 1.05 * plan.depth, searched)
@@ -184,8 +186,6 @@ def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solu
             plan = spectral.plan_bent(reach._replace(band=plan.band), rtol, noise, plan.depth / 3)
             searched = 0.0
             continue
-        if plan.other().band * plan.other().window > 2 * np.pi * MOST_MODES:
-            break
         line, second = (
             modes.with_circles(spectral.bent_line(p), found, max(reach.extent, reach.source))
             for p in (plan, plan.other())
@@ -206,7 +206,10 @@ def _bent_solution(s: Scene, checks: _Checks, reach: Reach, rtol: float) -> Solu
     if best is None and found is modes.UNCLEAR:
         raise ValueError("slab: it guides more backward waves than can be told from the forward ones; add loss")
     if best is None:
-        raise ValueError(f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window")
+        raise ValueError(
+            f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "
+            "edge does not end on its own launch plane: ask for z a little behind z0)"
+        )
     return best
 
 

@@ -220,3 +220,12 @@ def test_files_that_are_no_profile(tmp_path, text, said):
     path.write_text(text)
     with pytest.raises(ValueError, match=said):
         bp.Profile.from_file(path)
+
+
+@pytest.mark.parametrize("z0", [0.0, -0.02])
+def test_slits_on_their_own_launch_plane_are_refused_with_the_reason(z0):
+    """The spectrum of a sharp edge does not end there; a centimetre behind it, it does."""
+    slab = bp.Slab(bp.lmmd_cell(), 20)
+    with pytest.raises(ValueError, match="sharp edge"):
+        bp.field(slab, bp.Slits(0.02, 0.05, z0=z0), F, 0.0, z0, rtol=1e-3)
+    assert bp.field(slab, bp.Slits(0.02, 0.05, z0=-0.02), F, 0.0, -0.01).error_estimate < 1e-8
