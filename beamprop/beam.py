@@ -79,6 +79,14 @@ class _Tilted:
         """S(kx), the envelope's spectrum shifted by k0 sin(angle)."""
         return self._envelope_spectrum(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
 
+    def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
+        """S(kx) at angles of given sines (B,), if the source is entire: (B, n) for kx (n,)."""
+        return self._envelope_spectrum(np.asarray(kx) - k0 * sines[:, None])
+
+    def shifts_smoothly(self, tolerance: float) -> bool:
+        """Whether S is an entire function of sin(angle), but for `tolerance` of its largest value."""
+        return self.entire
+
     def at_angle(self: _B, angle: float) -> _B:
         """The same envelope at another angle [degree]."""
         return replace(self, angle=angle)  # type: ignore[type-var]
@@ -156,6 +164,10 @@ class GaussianBeam(_Tilted):
         waist = self._envelope_spectrum(kx * cosine - kz * sine)
         return np.where(inside, waist * (cosine + sine * kx / kz), 0.0) * shift
 
+    def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
+        """S(kx) of the launch form at angles of given sines (B,): (B, n) for kx (n,)."""
+        return super().spectra(kx, k0, sines) * np.exp(-1j * kx * self.x0)
+
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0) of the launch form; of the rotated form, its waist without the truncation to |kx| < k0."""
         xi = np.asarray(x) - self.x0
@@ -183,14 +195,14 @@ def _numbers(values: Any, kind: type, name: str) -> np.ndarray:
 
 
 def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """sum_j weights_j exp(-i k x_j), in blocks of bounded memory."""
+    """sum_j weights_j exp(-i k x_j), shaped like k and then like weights_j, in blocks of bounded memory."""
     k = np.asarray(k)
-    out = np.empty(k.size, complex)
+    out = np.empty((k.size, *weights.shape[1:]), complex)
     block = max(1, 2_000_000 // max(1, x.size))
     flat = k.ravel()
     for start in range(0, k.size, block):
         out[start : start + block] = np.exp(-1j * np.multiply.outer(flat[start : start + block], x)) @ weights
-    return out.reshape(k.shape)
+    return out.reshape(*k.shape, *weights.shape[1:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -320,6 +332,18 @@ class Profile(_Tilted):
     def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx) [Pa m], zero beyond the samples' Nyquist wavenumber."""
         return super().spectrum(kx, k0) * np.exp(-1j * k0 * float(sin_degrees(self.angle)) * self.centre)
+
+    def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
+        """S(kx) at angles of given sines (B,): (B, n) for kx (n,). Angles tilt the samples, so all share exp(-i kx x)."""
+        kx, tilt = np.asarray(kx), k0 * sines
+        tilted = self.p[:, None] * np.exp(1j * np.multiply.outer(self.x - self.centre, tilt))
+        S = self.spacing * _spectral_sum(kx, self.x, tilted).T
+        return np.where(np.abs(kx.real - tilt[:, None]) <= np.pi / self.spacing, S, 0)
+
+    def shifts_smoothly(self, tolerance: float) -> bool:
+        """Whether the samples' spectrum has vanished where it ends, at the Nyquist wavenumber."""
+        lo, hi = self.band(0.0, tolerance)
+        return (hi - lo) / 2 < (1 - 1e-9) * np.pi / self.spacing
 
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""

@@ -10,7 +10,7 @@ import numpy as np
 
 #: Numbers in a block that stays in the cache with its temporaries.
 BLOCK = 2**14
-#: OpenBLAS takes threads from 2^16 multiplications of complex numbers on.
+#: OpenBLAS takes threads from 2^16 multiplications of complex numbers on, and four times as many of real ones.
 UNTHREADED = 2**16
 #: From this size on threads pay.
 LARGE = 2**25
@@ -23,11 +23,13 @@ def small_product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return small_product(np.concatenate([a, a]), b)[:1]
     if n == 1:
         return small_product(a, np.concatenate([b, b], axis=1))[:, :1]
-    if m * k * n <= UNTHREADED:
+    out_type = np.result_type(a, b)
+    most = UNTHREADED if out_type.kind == "c" else 4 * UNTHREADED
+    if m * k * n <= most:
         return a @ b
-    out = np.empty((m, n), np.result_type(a, b))
-    columns = min(n, max(16, UNTHREADED // (k * min(m, 32))))
-    rows = max(1, UNTHREADED // (k * columns))
+    out = np.empty((m, n), out_type)
+    columns = min(n, max(16, most // (k * min(m, 32))))
+    rows = max(1, most // (k * columns))
     for j in range(0, n, columns):
         part = np.ascontiguousarray(b[:, j : j + columns])
         for i in range(0, m, rows):

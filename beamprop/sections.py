@@ -17,6 +17,7 @@ import numpy as np
 from . import modes, propagate, spectral
 from .beam import Beam
 from .conventions import outgoing_kz
+from .fan import single
 from .propagate import Transfer
 from .response import solve
 from .scene import Scene, at_frequency
@@ -277,7 +278,7 @@ def _measured_alone(
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
-        solution = propagate.choose_line(s, [beam], transfer, x, planes, rtol, guided)
+        solution = propagate.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
         h = transfer(solution.line.k, planes)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)

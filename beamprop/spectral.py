@@ -244,10 +244,10 @@ def _is_even(x: np.ndarray) -> bool:
 
 
 class _Plan(NamedTuple):
-    """FFTs of two sources (rows, n) into one result: sum_m c_m e^{2 pi i m j/n}, unscaled."""
+    """FFTs of two sources (rows, n) into two results: sum_m c_m e^{2 pi i m j/n}, unscaled."""
 
     sources: tuple[np.ndarray, np.ndarray]
-    result: np.ndarray
+    results: tuple[np.ndarray, np.ndarray]
     run: tuple[Any, Any]
 
 
@@ -257,18 +257,29 @@ def _inverse_plan(rows: int, n: int) -> _Plan:
     try:
         import pyfftw
     except ImportError:  # no wheel for this platform
-        import scipy.fft
-
-        sources, result = (np.zeros((rows, n), complex), np.zeros((rows, n), complex)), np.zeros((rows, n), complex)
-
-        def inverse(source: np.ndarray) -> None:
-            result[...] = scipy.fft.ifft(source, axis=1, norm="forward")
-
-        return _Plan(sources, result, (lambda: inverse(sources[0]), lambda: inverse(sources[1])))
-    one, two, result = (pyfftw.zeros_aligned((rows, n), dtype="complex128") for _ in range(3))
+        return _scipy_plan(rows, n)
+    a, b, c, d = (pyfftw.zeros_aligned((rows, n), dtype="complex128") for _ in range(4))
     # ESTIMATE plans in less than a millisecond; MEASURE takes 0.2 to 0.6 s a shape and gains no more than a fifth
-    plans = [pyfftw.FFTW(c, result, axes=(1,), direction="FFTW_BACKWARD", flags=("FFTW_ESTIMATE",)) for c in (one, two)]
-    return _Plan((one, two), result, (plans[0].execute, plans[1].execute))
+    options: Any = {"axes": (1,), "direction": "FFTW_BACKWARD", "flags": ("FFTW_ESTIMATE",)}
+    one, two = pyfftw.FFTW(a, c, **options), pyfftw.FFTW(b, d, **options)
+    return _Plan((a, b), (c, d), (one.execute, two.execute))
+
+
+def _scipy_plan(rows: int, n: int) -> _Plan:
+    """The same by scipy, a third slower."""
+    import scipy.fft
+
+    a, b, c, d = (np.zeros((rows, n), complex) for _ in range(4))
+
+    def inverse(source: np.ndarray, result: np.ndarray) -> None:
+        result[...] = scipy.fft.ifft(source, axis=1, norm="forward")
+
+    return _Plan((a, b), (c, d), (lambda: inverse(a, c), lambda: inverse(b, d)))
+
+
+def _twice(values: np.ndarray) -> np.ndarray:
+    """Every value twice: a factor for complex numbers seen as pairs of real ones, half the work of a complex product."""
+    return np.repeat(values, 2)
 
 
 def transform(coefficients: np.ndarray) -> np.ndarray:
@@ -277,11 +288,21 @@ def transform(coefficients: np.ndarray) -> np.ndarray:
     plan = _inverse_plan(*flat.shape)
     plan.sources[0][...] = flat
     plan.run[0]()
-    return plan.result.reshape(coefficients.shape).copy()
+    return plan.results[0].reshape(coefficients.shape).copy()
 
 
 def fast_length(n: int) -> int:
-    """The next length that an FFT likes: 2^a 3^b 5^c."""
+    """A length that an FFT likes: 2^a or 5 2^a up to an eighth longer than asked, else the next 2^a 3^b 5^c.
+
+    Factors of 3 cost: 1152 and 1296 points take twice as long as 1280 (FFTW, plans by estimate).
+    """
+    powers = [f << max(0, math.ceil(math.log2(n / f))) for f in (1, 5)]
+    longer = [m for m in powers if n <= m <= 1.125 * n]
+    return min(longer) if longer else next_smooth(n)
+
+
+def next_smooth(n: int) -> int:
+    """The next 2^a 3^b 5^c."""
     best = 1 << max(0, (n - 1).bit_length())
     five = 1
     while five < best:
@@ -330,29 +351,32 @@ def fft_sum(
     """
     shape = (*right.shape[:-1], h.shape[0], x.size)
     turn = np.exp(1j * (line.first + np.arange(line.k.size)) * line.step * x[0])
-    to_left = bool(np.any(left))
+    leftward = bool(np.any(left))
     if right.ndim == 1:
         forth, back, right, left = h, h, right * turn, left / turn
     else:
         forth, back = ((v[:, None] * h).reshape(-1, h.shape[1]) for v in (right, left))
         right, left = turn, 1 / turn
-    grow = np.exp(line.sigma * x)
-    decay, last = 1 / grow, line.first + line.k.size - 1
+    grow = _twice(np.exp(line.sigma * x))
+    decay, last = _twice(np.exp(-2 * line.sigma * x)), line.first + line.k.size - 1
     flat = np.empty((forth.shape[0], x.size), complex) if out is None else out.reshape(-1, x.size)
     rows = max(1, min(flat.shape[0], 2**14 // n))
     plan = _inverse_plan(rows, n)
     for source in plan.sources:
         source[...] = 0
+    real = flat.view(float)
+    parts = [result[:, : x.size].view(float) for result in plan.results]
     for start in range(0, flat.shape[0], rows):
         block = slice(start, min(start + rows, flat.shape[0]))
         size = block.stop - block.start
-        part = plan.result[:size, : x.size]
+        to_right, to_left = (part[:size] for part in parts)
+        # plain: flat = grow ifft(right h) + ifft(left h, from the end on)/grow
         _fold(forth[block], right, line.first, plan.sources[0][:size])
         plan.run[0]()
-        np.multiply(part, grow, out=flat[block])
-        if to_left:  # into the bins -m: the same amplitudes from the end on
+        if leftward:  # into the bins -m: the same amplitudes from the end on
             _fold(back[block, ::-1], left[::-1], -last, plan.sources[1][:size])
             plan.run[1]()
-            part *= decay
-            flat[block] += part
+            to_left *= decay
+            to_right += to_left
+        np.multiply(to_right, grow, out=real[block])
     return flat.reshape(shape)

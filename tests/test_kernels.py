@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import products, response, scene, sections, spectral
+from beamprop import fan, products, response, scene, sections, spectral
 from beamprop.media import layer_values
 from beamprop.response import cells, inside, march
 from beamprop.response import layers as one
@@ -157,12 +157,11 @@ def test_periods_by_tables_against_the_closed_form(seed, lossless):
     b = cells.bloch_phase(m)
     far = one.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
     counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 4), 200))
-    g, f = inside._factors(b, counts, np.zeros(60), np.ones(60))
-    moved = inside._moved(m, b, far)
+    (first, second), (outer, x) = inside._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
     plain = cells.power_back(m, b, far, counts[:, None])
     scale = np.exp(plain.log)
-    close(g * far.p[0] + f * moved.p[0], plain.p * scale, rtol=3e-13, axis=0)
-    close(g * far.q[0] + f * moved.q[0], plain.q * scale, rtol=3e-13, axis=0)
+    close(outer * first.p[0] + x * second.p[0], plain.p * scale, rtol=3e-13, axis=0)
+    close(outer * first.q[0] + x * second.q[0], plain.q * scale, rtol=3e-13, axis=0)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -171,7 +170,7 @@ def test_the_rest_of_a_layer_as_powers_of_the_share(seed):
     layers, omega = layer_values(random_cell(rng), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
     kx, share = random_kx(rng, 40), rng.random(30)
     faces = [one.State(rng.random((1, 40)) + 0j, rng.random((1, 40)) * 1j, np.zeros(1)) for _ in range(2)]
-    found = inside._rest_of_layer(layers, 0, omega, kx, faces, share)
+    found = inside._rest_of_layer(layers, 0, omega, kx, faces)(share)
     for p, face in zip(found, faces, strict=True):
         wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
         close(p, np.array(wanted).astype(complex))
@@ -251,7 +250,18 @@ def test_many_beams_at_once(seed):
 def test_fast_lengths():
     lengths = sorted(2**a * 3**b * 5**c for a in range(13) for b in range(9) for c in range(6))
     for n in (1, 2, 7, 11, 97, 1025, 1331, 2049, 4000):
-        assert spectral.fast_length(n) == min(m for m in lengths if m >= n)
+        assert spectral.next_smooth(n) == min(m for m in lengths if m >= n)
+        assert n <= spectral.fast_length(n) <= max(1.125 * n, spectral.next_smooth(n))
+    assert [spectral.fast_length(n) for n in (1, 2, 5, 1020, 1100, 1199, 1300, 1440)] == [
+        1,
+        2,
+        5,
+        1024,
+        1125,
+        1280,
+        1350,
+        1440,
+    ]
 
 
 # --- widths -----------------------------------------------------------------------------------------------
@@ -274,3 +284,46 @@ def test_a_profile_and_its_slopes(seed):
     for found, want in zip(modal.at(x), wanted, strict=True):
         close(found, want)
     close(modal.value(x), wanted[0])
+
+
+# --- many angles ------------------------------------------------------------------------------------------
+
+PROFILE_X = np.linspace(-0.2, 0.2, 200)
+SOURCES = {
+    "gaussian": bp.GaussianBeam(0.096, x0=0.3, z0=-0.1),
+    "wide": bp.GaussianBeam(3.0),
+    "slits": bp.Slits(0.02, 0.05, 3, z0=-0.02),
+    "profile": bp.Profile(PROFILE_X, np.exp(-((PROFILE_X / 0.03) ** 2)) * (1 + 0.3j * np.sin(50 * PROFILE_X))),
+    "coarse profile": bp.Profile(PROFILE_X[::5], np.exp(-((PROFILE_X[::5] / 0.1) ** 2)), z0=-0.2),
+    "rotated": bp.GaussianBeam(0.096, form="rotated"),
+}
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_spectra_of_many_angles_are_those_of_each(name):
+    beam, rng = SOURCES[name], np.random.default_rng(3)
+    angles, kx = rng.uniform(-89, 89, 7), rng.uniform(-300, 300, 50) - 3j * rng.random(50)
+    wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, 45.0) for a in angles])
+    close(fan.Fan(beam, angles).spectra(kx, 45.0), wanted, rtol=1e-11)
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_many_angles_are_mixed_from_a_few(name):
+    """A fan's spectra are, to the tolerance, the mixture of those at its nodes: at the ends and between."""
+    beam, rng, k0 = SOURCES[name], np.random.default_rng(4), 45.0
+    angles = np.concatenate([[-89.9, 89.9, 0.0], rng.uniform(-89.9, 89.9, 150)])
+    found = fan.fan(beam, angles, k0, 1e-12)
+    assert (found.mix is None) == (name in ("wide", "rotated", "coarse profile"))
+    kx = np.linspace(-100, 100, 41) + 0j
+    wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, k0) for a in angles])
+    close(found.mixed(found.spectra(kx, k0)), wanted, rtol=3e-12 * angles.size)
+
+
+def test_the_field_at_many_angles_is_that_of_each():
+    slab, beam = bp.Slab(bp.lmmd_cell(0.05, 0.0), 60), bp.GaussianBeam(0.096)
+    x, z, angles = np.linspace(-1, 1, 101), [0.0, 0.05, slab.thickness], np.linspace(-85, 85, 90)
+    many = bp.field(slab, beam, 2500.0, x, z, angle=angles)
+    for i in (0, 1, 44, 89):
+        one = bp.field(slab, beam, 2500.0, x, z, angle=angles[i])
+        apart = np.abs(one.p - many.p[i].drop_vars("angle")).max("x") / np.abs(one.p).max("x")
+        assert apart.max() <= one.error_estimate + many.error_estimate[i].drop_vars("angle")

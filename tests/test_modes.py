@@ -102,6 +102,7 @@ def test_field_beside_a_backward_mode(density, thickness):
 def test_wrong_side_would_be_seen():
     """The circles are what puts a backward mode right: without them the field is far off."""
     from beamprop import modes, propagate
+    from beamprop.fan import single
     from beamprop.scene import scene
 
     s = scene(thin(-0.6, 0.01), F)
@@ -111,7 +112,9 @@ def test_wrong_side_would_be_seen():
     transfer = propagate.through(s, 0.0)
     with_them, without = (
         propagate.point_sum(s, beam, line, transfer(line.k, z), x)
-        for line in (propagate.choose_line(s, [beam], transfer, x, z, 1e-8, guided).line for guided in (True, False))
+        for line in (
+            propagate.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False)
+        )
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from .. import datasets, propagate, sections, widths
 from ..beam import Beam
+from ..fan import fan
 from ..media import Slab, as_number
 from ..scene import Scene, scene, scenes
 from . import checks
@@ -77,17 +78,16 @@ def field(
         raise ValueError(f"boundary: expected 'open' or 'periodic', got {boundary!r}")
     if np.min(zs) < beam.z0:
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
-    beams = [beam.at_angle(float(a)) for a in np.atleast_1d(angles)]
-    flat, x1, z1 = (np.atleast_1d(v) for v in (f, xs, zs))
+    flat, flat_angles, x1, z1 = (np.atleast_1d(v) for v in (f, angles, xs, zs))
     if boundary == "periodic":
         period = _period(period, x1, beam, slab, flat)
     elif period is not None:
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
-    p = np.empty((flat.size, len(beams), z1.size, x1.size), complex)
+    p = np.empty((flat.size, flat_angles.size, z1.size, x1.size), complex)
     errors = np.full(p.shape[:2], np.nan)
     for i, frequency_i in enumerate(progress(flat)):
         s = scene(slab, float(frequency_i))
-        _field_at(s, beams, x1, z1, period, rtol, p[i], errors[i])
+        _field_at(s, beam, flat_angles, x1, z1, period, rtol, p[i], errors[i])
     _announce(p, errors, rtol)
     axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
     dims, pick = checks.dims(**axes)
@@ -114,7 +114,8 @@ def field(
 
 def _field_at(
     s: Scene,
-    beams: list[Beam],
+    beam: Beam,
+    angles: np.ndarray,
     x: np.ndarray,
     z: np.ndarray,
     period: float | None,
@@ -123,18 +124,19 @@ def _field_at(
     errors: np.ndarray,
 ) -> None:
     """Fill out (angle, z, x) and errors (angle) at one frequency, in blocks of planes of bounded memory."""
-    transfer = propagate.through(s, beams[0].z0)
+    transfer = propagate.through(s, beam.z0)
+    beams = fan(beam, angles, s.k0, rtol * 1e-5)
     if period is None:
         solution = propagate.choose_line(s, beams, transfer, x, z, rtol)
         errors[:] = solution.error
     else:
         solution = propagate.periodic_solution(s, beams, x, period)
-    block = max(16, 20_000_000 // (16 * max(1, solution.line.k.size)))
+    # the response, and with many angles the fields that are mixed
+    row = max(1, solution.line.k.size, 0 if beams.mix is None else beams.angles.size * x.size)
+    block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
     for start in range(0, z.size, block):
         rows = slice(start, start + block)
-        h = transfer(solution.line.k, z[rows])
-        for j, beam in enumerate(beams):
-            out[j, rows] = propagate.beam_sum(s, beam, solution, h, x)
+        propagate.fill(s, beams, solution, transfer(solution.line.k, z[rows]), x, out[:, rows])
 
 
 def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:

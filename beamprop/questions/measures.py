@@ -13,6 +13,7 @@ import xarray as xr
 from .. import datasets, propagate, spectral, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
+from ..fan import single
 from ..media import FluidValues, Slab
 from ..response import solve
 from ..scene import Scene, scene
@@ -152,7 +153,7 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
     half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
     for _ in range(7):
         x = beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
-        solution = propagate.choose_line(s, [beam], transfer, x, plane, rtol)
+        solution = propagate.choose_line(s, single(beam), transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)

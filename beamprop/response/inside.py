@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -102,16 +101,46 @@ def _fill_periodic(
     if m.growth is not None:
         return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
     behind, which = _counts(periods - 1 - places.period)
-    g, f = _factors(b, behind, far.log[0] - near_log, per_incident)
-    moved = _moved(m, b, far)
+    states, factors = _in_two_terms(m, b, far, behind, near_log, per_incident)
+    gathered = np.empty((ROWS, kx.shape[1]), complex)
     for j, here, tail in _with_tails(layers, omega, kx, places):
-        both = [state if tail is None else matrix_back(tail, state) for state in (far, moved)]
-        one, two = _rest_of_layer(layers, j, omega, kx, both, places.share[here])
-        row = which[here]
-        one *= g[row]
-        two *= f[row]
-        one += two
-        out[rows[here]] = one
+        both = [state if tail is None else matrix_back(tail, state) for state in states]
+        pressures = _rest_of_layer(layers, j, omega, kx, both)
+        for start in range(0, here.size, ROWS):  # blocks that stay in the cache
+            block = here[start : start + ROWS]
+            one, two = pressures(places.share[block])
+            for pressure, factor in zip((one, two), factors, strict=True):
+                pressure *= np.take(factor, which[block], axis=0, out=gathered[: block.size], mode="clip")
+            one += two
+            out[rows[block]] = one
+
+
+#: Depths that are worked on at a time.
+ROWS = 32
+
+
+def _in_two_terms(
+    m: Matrix, b: BlochPhase, far: State, behind: np.ndarray, near_log: np.ndarray, scale: np.ndarray
+) -> tuple[tuple[State, State], tuple[np.ndarray, np.ndarray]]:
+    """`power_back` for sorted counts of periods as a sum of two states times factors (len(behind), n).
+
+    ``Lambda^n M^-n far = g far + f (M^-1 - I) far`` with x = Lambda^2n - 1 in g = 1 + x/(1 + Lambda) and f = Lambda
+    x/(Lambda^2 - 1): factor 1 goes with `far`, factor x (n at the band edge) with far/(1 + Lambda) + Lambda/(Lambda^2 - 1)
+    (M^-1 - I) far; both times exp(log - i phase n) scale.
+    """
+    # plain: x = expm1(2i reduced count), g = (lam + 1 + x)/(1 + lam), f = lam x/expm1(2i reduced)
+    reduced, phase = b.reduced[0], b.phase[0]
+    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
+    edge = np.abs(x2) < TINY
+    moved = _moved(m, b, far)
+    own, other = np.where(edge, 0.0, 1 / (1 + lam)), lam / np.where(edge, 1.0, x2)
+    second = State(own * far.p + other * moved.p, own * far.q + other * moved.q, far.log)
+    outer = _exp_table(far.log[0] - near_log, -1j * phase, behind, scale)
+    x = _expm1_table(2j * reduced, behind)
+    if np.any(edge):
+        x = np.where(edge, behind[:, None], x)
+    x *= outer
+    return (far, second), (outer, x)
 
 
 def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
@@ -120,25 +149,6 @@ def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
     p = sign * (m.e22 * far.p - m.e12 * far.q) - twice * far.p
     q = sign * (m.e11 * far.q - m.e21 * far.p) - twice * far.q
     return State(p, q, far.log)
-
-
-def _factors(b: BlochPhase, behind: np.ndarray, log: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """g and f of `power_back` for sorted counts of periods, times exp(log - i phase count) scale: (len(behind), n)."""
-    # plain: x2n = expm1(2i reduced count), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced)
-    reduced, phase = b.reduced[0], b.phase[0]
-    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
-    edge = np.abs(x2) < TINY
-    x2n = _expm1_table(2j * reduced, behind)
-    outer = _exp_table(log, -1j * phase, behind)
-    outer *= scale
-    f = np.where(edge, behind[:, None], x2n) if np.any(edge) else x2n.copy()
-    f *= lam / np.where(edge, 1.0, x2)
-    f *= outer
-    g = x2n
-    g += 1 + lam
-    g /= 1 + lam
-    g *= outer
-    return g, f
 
 
 #: From how many periods on their powers are products of two small tables, and the step between the entries of the coarse one.
@@ -173,11 +183,11 @@ def _expm1_table(y: np.ndarray, counts: np.ndarray) -> np.ndarray:
     return out.reshape(counts.size, -1)
 
 
-def _exp_table(log: np.ndarray, y: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """exp(log + counts y): (len(counts), n), 0 where it is below 1e-282."""
+def _exp_table(log: np.ndarray, y: np.ndarray, counts: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """exp(log + counts y) scale: (len(counts), n), 0 where the exponential is below 1e-282."""
     if not _dense(counts) or float(np.max(np.abs(y.real))) * STEP > 300:  # a factor could overflow on its own
-        return np.exp(_faint(log + np.multiply.outer(counts, y)))
-    coarse = np.exp(_faint(log + np.multiply.outer(counts[::STEP], y)))
+        return np.exp(_faint(log + np.multiply.outer(counts, y))) * scale
+    coarse = np.exp(_faint(log + np.multiply.outer(counts[::STEP], y))) * scale
     fine = np.exp(np.multiply.outer(np.arange(STEP), y))
     return (coarse[:, None] * fine).reshape(counts.size, -1)
 
@@ -205,27 +215,33 @@ def _with_tails(
 
 
 def _rest_of_layer(
-    layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, faces: list[State], share: np.ndarray
-) -> list[np.ndarray]:
-    """Pressures in layer j in front of given states at its far face, `share` of its thickness away: (Z, n) each."""
+    layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, faces: list[State]
+) -> Callable[[np.ndarray], list[np.ndarray]]:
+    """Pressures in layer j in front of given states at its far face: a function of the share (Z,) of its thickness."""
     omega2, kx2 = omega * omega, kx * kx
     A, B, whole = one_layer(layers, j, omega2, kx2)
     u = A * B
     size = float(np.max(np.abs(u)))
-    if size >= 0.5 or whole.growth is not None or share.size < 8:
-        A, B, f = one_layer(layers, j, omega2, kx2, share[:, None])
-        return [layer_back(face, A, B, f).p * np.ones((share.size, 1)) for face in faces]
+    if size >= 0.5 or whole.growth is not None:
+
+        def exactly(share: np.ndarray) -> list[np.ndarray]:
+            A, B, f = one_layer(layers, j, omega2, kx2, share[:, None])
+            return [layer_back(face, A, B, f).p * np.ones((share.size, 1)) for face in faces]
+
+        return exactly
     # cos and sin as powers of share: p = p_far (1 - u s^2/2! + ...) - A q_far (s - u s^3/3! + ...)
     terms = terms_for(size) + 1
-    powers = share[:, None] ** np.arange(2 * terms)
-    series = np.cumprod(np.concatenate([np.ones_like(u), np.repeat(-u, terms - 1, axis=0)]), axis=0)
-    even = series / np.array([math.factorial(2 * k) for k in range(terms)])[:, None]
-    odd = series * -A / np.array([math.factorial(2 * k + 1) for k in range(terms)])[:, None]
-    out = []
-    for face in faces:
-        coefficients = np.stack([even * face.p, odd * face.q], axis=1).reshape(2 * terms, -1)
-        out.append(small_product(powers, coefficients.view(float)).view(complex))
-    return out
+    coefficients = [np.empty((2 * terms, kx.shape[1]), complex) for _ in faces]
+    for face, c in zip(faces, coefficients, strict=True):
+        c[0], c[1] = face.p, -A * face.q
+        for i in range(2, 2 * terms):
+            np.multiply(c[i - 2], u[0] / -(i * (i - 1)), out=c[i])
+
+    def by_powers(share: np.ndarray) -> list[np.ndarray]:
+        powers = np.vander(share, 2 * terms, increasing=True)
+        return [small_product(powers, c.view(float)).view(complex) for c in coefficients]
+
+    return by_powers
 
 
 def _fill_opaque(

@@ -1,0 +1,149 @@
+"""The error of a field on a line, judged by a second line that shares no number with the first.
+
+Their difference at a few planes and positions is the error of the coarser one. What both would miss is added: the end of
+the band, and a spectrum that ends inside a line. The second line's response is taken at kx and w moved in their last bits,
+so that rounding which both share shows too.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from . import spectral
+from .fan import Fan
+from .scene import Scene
+from .spectral import Line, Reach
+from .transfers import Transfer
+
+#: How far kx and w are moved.
+SHIFT = 4 * spectral.EPS
+#: Planes on which the largest |p| is below this are dark.
+DARK = 1e-290
+
+
+class Checks(NamedTuple):
+    """Where two lines are compared."""
+
+    fan: Fan
+    transfer: Transfer
+    x: np.ndarray
+    z: np.ndarray
+    guided: bool  #: whether the transfer knows guided modes (none without a slab)
+
+
+class Sampled(NamedTuple):
+    """A line, and its response at the planes that are compared."""
+
+    line: Line
+    h: np.ndarray
+
+
+def check_points(
+    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach."""
+    zs = np.sort(z)
+    pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
+    near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
+    xs = np.sort(x)
+    xs = xs[np.unique(np.linspace(0, xs.size - 1, 31).round().astype(int))]
+    own = centre + source * np.linspace(-1, 1, 41)
+    return np.concatenate([xs, own]), np.unique([*pick, *near])
+
+
+def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
+    """The response at the planes that are compared, `moved` in its last bits or not."""
+    return Sampled(line, checks.transfer(line.k, checks.z, SHIFT if moved else 0.0))
+
+
+def noise(checks: Checks, reach: Reach) -> float:
+    """Relative rounding of the response at the first and last plane, seen in its change when k changes in the last bits."""
+    k = np.linspace(0.03, min(reach.band, 3 * reach.k0), 24) * (1 - 0.05j)
+    planes = checks.z[[0, -1]] if checks.z.size > 1 else checks.z
+    both = checks.transfer(np.concatenate([k, k * (1 + SHIFT)]), planes)
+    a, b = both[:, : k.size], both[:, k.size :]
+    size = np.max(np.abs(a), axis=1, keepdims=True)
+    change = np.abs(a - b) / np.where(size > 0, size, 1.0)
+    return float(np.max(change, initial=0.0, where=np.isfinite(change)))
+
+
+def difference(s: Scene, checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
+    """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what is the band's edge."""
+    fan = checks.fan
+    (right1, left1), (right2, left2) = amplitudes(s, fan, one.line), amplitudes(s, fan, two.line)
+    x = checks.x - fan.beam.centre
+    a = fan.mixed(np.asarray(spectral.direct_sum(one.line, one.h, right1, left1, x)))
+    b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
+    largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
+    seen = largest > DARK
+    scale = np.where(seen, largest, 1.0)
+    edge = np.zeros(largest.shape)
+    with np.errstate(invalid="ignore", over="ignore"):
+        error = np.max(np.abs(a - b), axis=2) / scale
+        if fan.beam.entire:
+            mix = None if fan.mix is None else np.abs(fan.mix)
+            edge, cut = _beyond(two, right2, left2), _cut_off(s, fan, one, right1, left1, float(np.max(np.abs(x))))
+            edge, cut = (v if mix is None else mix @ v for v in (edge, cut))
+            error += cut / scale
+        if fan.mix is not None:
+            error += _mixing(s, fan, one, a, x) / scale
+    worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
+    return np.maximum(worst, 4 * spectral.EPS), float(np.max(np.where(seen, edge / scale, 0.0)))
+
+
+def amplitudes(s: Scene, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
+    """w S(k) and w S(-k) about the source's middle: (B, n) each."""
+    return spectral.amplitudes(line, lambda k: fan.spectra(k, s.k0), fan.beam.centre)
+
+
+def _mixing(s: Scene, fan: Fan, one: Sampled, mixed: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Error of fields mixed from those at the nodes, by plane: five of the asked angles, summed themselves; (Z,)."""
+    assert fan.mix is not None
+    asked = np.unique(np.linspace(0, fan.mix.shape[0] - 1, 5).round().astype(int))
+    angles = np.degrees(np.arcsin(np.clip(fan.mix[asked] @ np.sin(np.radians(fan.angles)), -1, 1)))
+    right, left = amplitudes(s, Fan(fan.beam, angles), one.line)
+    apart = spectral.direct_sum(one.line, one.h, right, left, x) - mixed[asked]
+    return 3 * np.max(np.abs(apart), axis=(0, 2))
+
+
+def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
+    """Size of what lies beyond the end of a line: its last two tenths, continued geometrically; (B, Z)."""
+    n = end.line.k.size
+    tenth = max(1, n // 10)
+    tail = slice(max(0, n - 2 * tenth), n)
+    size = (np.abs(right[:, tail]) + np.abs(left[:, tail]))[:, None] * np.abs(end.h[:, tail])
+    last, before = size[..., -tenth:].sum(axis=-1), size[..., :-tenth].sum(axis=-1)
+    ratio = np.clip(last / np.maximum(before, 1e-300), 0.0, 0.95)
+    return 2 * last * ratio / (1 - ratio)
+
+
+def _cut_off(s: Scene, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
+    """Size of what is missing where a spectrum ends inside a line (samples too coarse for their profile); (B, Z).
+
+    |w S h e^{ikx}| at the last node, times the nodes that would fit between it and the real axis, where the cut is defined.
+    """
+    line = one.line
+    missing = np.zeros((right.shape[0], one.h.shape[0]))
+    for side, amplitude in ((1, right), (-1, left)):
+        beyond = fan.spectra(side * _after(line, line.k.size - 1), s.k0)
+        for i in np.flatnonzero((amplitude[:, -1] == 0) | ~beyond.any(axis=1)):
+            used = np.flatnonzero(amplitude[i])
+            if used.size < 2:
+                continue
+            j = int(used[-1])
+            if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), s.k0).any():
+                continue
+            step, depth = max(abs(line.k[j] - line.k[j - 1]), 1e-300), abs(line.k[j].imag)
+            missing[i] += (
+                np.abs(amplitude[i, j] * one.h[:, j]) * (1 + depth / step) * math.exp(min(depth * extent, 100))
+            )
+    return missing
+
+
+def _after(line: Line, j: int) -> np.ndarray:
+    """Two places beyond node j."""
+    step = max(abs(line.k[j] - line.k[j - 1]), 1e-300)
+    return line.k[j] + 2 * step * np.arange(1, 3)
