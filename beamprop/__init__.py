@@ -17,6 +17,7 @@ from ._version import __version__
 if TYPE_CHECKING:
     from . import fem, plot
     from .beam import GaussianBeam, Profile, Slits
+    from .blocks import save_field
     from .comparison import compare
     from .comsol import read_comsol, to_grid
     from .datasets import provenance
@@ -52,6 +53,7 @@ _HOMES = {
     "comsol": ("read_comsol", "to_grid"),
     "datasets": ("provenance",),
     "storage": ("load", "save"),
+    "blocks": ("save_field",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 _MODULES = ("fem", "plot")
@@ -84,6 +86,7 @@ __all__ = [
     "provenance",
     "read_comsol",
     "save",
+    "save_field",
     "scattering",
     "standard_emt",
     "to_grid",

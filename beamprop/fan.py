@@ -34,6 +34,12 @@ class Fan(NamedTuple):
         """The beam at one angle."""
         return self.beam if angle == self.beam.angle else self.beam.at_angle(float(angle))
 
+    def part(self, asked: slice) -> Fan:
+        """Some of the asked beams."""
+        if self.mix is None:
+            return self._replace(angles=self.angles[asked])
+        return self._replace(mix=self.mix[asked])
+
     def band(self, k0: float, tolerance: float) -> float:
         """Largest |kx| at which a spectrum exceeds `tolerance` of its largest value [rad/m]."""
         ends = (self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max()))

@@ -11,12 +11,14 @@ import contextlib
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
+
+from .conventions import label
 
 NETCDF = (".nc", ".nc4", ".netcdf", ".h5")
 ZARR = (".zarr",)
@@ -97,6 +99,64 @@ def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compr
             # unfinished complex chunks would read as 0 + 0j otherwise
             fill = {n: {"fill_value": complex(np.nan, np.nan)} for n, v in out.variables.items() if v.dtype.kind == "c"}
             out.to_zarr(draft, encoding=fill, consolidated=False)
+
+    write_whole(path, write)
+
+
+#: Where a block of a variable goes, and its values.
+Blocks = Iterable[tuple[tuple[Any, ...], np.ndarray]]
+
+
+def save_blocks(
+    path: str | Path,
+    name: str,
+    sizes: dict[str, int],
+    chunks: tuple[int, ...],
+    blocks: Blocks,
+    rest: Callable[[], xr.Dataset],
+) -> None:
+    """Write one complex variable block by block, then what goes with it; the file is what `save` would write.
+
+    Parameters
+    ----------
+    path : path
+        Ending in .nc or .zarr; replaced if it exists, once the new one is complete.
+    name : str
+    sizes : dimension -> length
+        Of the variable, in its order.
+    chunks : tuple of int
+        Of a Zarr store, which blocks must cover whole.
+    blocks : iterable of (index, values)
+    rest : function
+        The dataset without that variable, asked for when all blocks have been written.
+    """
+    path = Path(path)
+    kind = _kind(path)
+    shape, labels = tuple(sizes.values()), dict[str, Any](label(name))
+
+    def write(draft: Path) -> None:
+        if kind == "netcdf":
+            import h5netcdf
+
+            with h5netcdf.File(draft, "w") as file:
+                file.dimensions = sizes
+                into = file.create_variable(name, tuple(sizes), dtype=np.dtype(complex))
+                into.attrs.update(labels)
+                for where, values in blocks:
+                    into[where] = values
+            rest().to_netcdf(draft, mode="a", engine="h5netcdf")
+            return
+        _import_zarr()
+        import zarr
+
+        group = zarr.open_group(draft, mode="w")
+        nothing, dims = complex(np.nan, np.nan), list(sizes)
+        into = group.create_array(
+            name, shape=shape, dtype=complex, chunks=chunks, fill_value=nothing, dimension_names=dims, attributes=labels
+        )
+        for where, values in blocks:
+            into[where] = values
+        rest().to_zarr(draft, mode="a", consolidated=False)
 
     write_whole(path, write)
 

@@ -36,6 +36,7 @@ ORDER = [
     "comsol",
     "comparison",
     "storage",
+    "blocks",
     "sweep",
     "_plot_comparison",
     "plot",

@@ -19,19 +19,22 @@ def answer(
     ask: Callable[[], xr.Dataset],
     draw: Callable[[xr.Dataset], Any] | None,
     summary: Callable[[xr.Dataset], str],
+    saved: bool = False,
 ) -> xr.Dataset:
-    """Ask, write, draw, print; the dataset. A ValueError is wrong use: exit 2."""
+    """Ask, write (unless asking has `saved`), draw, print; the dataset. A ValueError is wrong use: exit 2."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
             ds = ask()
         except ValueError as error:
             raise click.UsageError(str(error)) from None
+        except (OSError, ImportError) as error:
+            raise click.ClickException(str(error)) from None
     for w in caught:
         if not issubclass(w.category, DeprecationWarning):
             click.echo(f"warning: {w.message}", err=True)
     try:
-        if o["output"]:
+        if o["output"] and not saved:
             from ..storage import save
 
             save(ds, o["output"])

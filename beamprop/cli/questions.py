@@ -63,6 +63,11 @@ def _needs_axis(o: dict[str, Any], *names: str) -> None:
 @option("--boundary", default="open", kind=click.Choice(["open", "periodic"]), text="One beam, or a periodic array.")
 @click.option("--period", type=float, help="Of the periodic array [m].")
 @option("--quantity", default="abs", kind=click.Choice(["abs", "real"]), text="What --plot draws.")
+@click.option(
+    "--memory",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Write --output block by block, each of at most this many MiB: for maps larger than memory.",
+)
 @OUTPUT
 def field(**o: Any) -> None:
     """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
@@ -72,7 +77,7 @@ def field(**o: Any) -> None:
 
         slab = slab_of(o)
         z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
-        return field(
+        question = (
             slab,
             beam_of(o, o["z0"]),
             o["frequency"],
@@ -82,7 +87,13 @@ def field(**o: Any) -> None:
             o["boundary"],
             o["period"],
             o["rtol"],
-            progress=progress(o["quiet"], "fields"),
+        )
+        if o["memory"] is None:
+            return field(*question, progress=progress(o["quiet"], "fields"))
+        from ..blocks import save_field
+
+        return save_field(
+            o["output"], *question, memory=o["memory"] * 2**20, progress=progress(o["quiet"], "blocks of the field")
         )
 
     def draw(ds: xr.Dataset) -> Any:
@@ -94,12 +105,15 @@ def field(**o: Any) -> None:
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
     if o["plot"] and not (isinstance(o["x"], list) and isinstance(o["z"] or [], list)):
         raise click.UsageError("--plot: expected axes for --x and --z, got one value")
-    answer(o, ask, draw, _field_summary)
+    if o["memory"] is not None and (o["plot"] or o["as_json"] or not o["output"]):
+        raise click.UsageError("--memory: expected --output alone, for a map that is written and never held")
+    answer(o, ask, draw, _field_summary, saved=o["memory"] is not None)
 
 
 def _field_summary(ds: xr.Dataset) -> str:
-    sizes = ", ".join(f"{d} {n}" for d, n in ds["p"].sizes.items())
-    lines = [f"p on ({sizes}); largest |p| {float(abs(ds['p']).max()):.6g} Pa"]
+    sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
+    largest = f"; largest |p| {float(abs(ds['p']).max()):.6g} Pa" if "p" in ds else ""
+    lines = [f"p on ({sizes}){largest}"]
     if "error_estimate" in ds:
         lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
     return "\n".join(lines)

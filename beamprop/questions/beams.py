@@ -8,17 +8,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, propagate, sections, widths
+from .. import datasets, sections, widths
 from ..beam import Beam
-from ..fan import fan
 from ..media import Slab, as_number
-from ..scene import Scene, scene, scenes
+from ..scene import scenes
 from . import checks
 from .checks import Progress
-
-
-class AccuracyWarning(UserWarning):
-    """A field whose estimated error is above the asked rtol."""
+from .maps import FieldMap
 
 
 def field(
@@ -70,107 +66,13 @@ def field(
     ValueError
         Names the argument, what was expected and what came.
     """
-    checks.instance(slab, Slab, "slab")
-    checks.instance(beam, Beam, "beam")
-    f, xs, zs = checks.axis(frequency, "frequency", positive=True), checks.axis(x, "x"), checks.axis(z, "z")
-    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
-    if boundary not in ("open", "periodic"):
-        raise ValueError(f"boundary: expected 'open' or 'periodic', got {boundary!r}")
-    if np.min(zs) < beam.z0:
-        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
-    flat, flat_angles, x1, z1 = (np.atleast_1d(v) for v in (f, angles, xs, zs))
-    if boundary == "periodic":
-        period = _period(period, x1, beam, slab, flat)
-    elif period is not None:
-        raise ValueError(f"period: expected none with boundary='open', got {period!r}")
-    p = np.empty((flat.size, flat_angles.size, z1.size, x1.size), complex)
-    errors = np.full(p.shape[:2], np.nan)
-    for i, frequency_i in enumerate(progress(flat)):
-        s = scene(slab, float(frequency_i))
-        _field_at(s, beam, flat_angles, x1, z1, period, rtol, p[i], errors[i])
-    _announce(p, errors, rtol)
-    axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
-    dims, pick = checks.dims(**axes)
-    few = tuple(d for d in dims if d in ("frequency", "angle"))
-    variables: dict[str, Any] = {"p": (dims, p[pick])}
-    if boundary == "open":
-        variables["error_estimate"] = (few, errors[pick[:2]])
-    ds = datasets.make(
-        variables,
-        checks.coords(**axes),
-        "field",
-        flat,
-        slab=slab,
-        beam=beam,
-        boundary=boundary,
-        period=period,
-        rtol=rtol,
-    )
-    ds.attrs |= {"boundary": boundary, "slab_thickness": slab.thickness}
-    if period is not None:
-        ds.attrs["period"] = period
-    return ds
-
-
-def _field_at(
-    s: Scene,
-    beam: Beam,
-    angles: np.ndarray,
-    x: np.ndarray,
-    z: np.ndarray,
-    period: float | None,
-    rtol: float,
-    out: np.ndarray,
-    errors: np.ndarray,
-) -> None:
-    """Fill out (angle, z, x) and errors (angle) at one frequency, in blocks of planes of bounded memory."""
-    transfer = propagate.through(s, beam.z0)
-    beams = fan(beam, angles, s.k0, rtol * 1e-5)
-    if period is None:
-        solution = propagate.choose_line(s, beams, transfer, x, z, rtol)
-        errors[:] = solution.error
-    else:
-        solution = propagate.periodic_solution(s, beams, x, period)
-    # the response, and with many angles the fields that are mixed
-    row = max(1, solution.line.k.size, 0 if beams.mix is None else beams.angles.size * x.size)
-    block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
-    for start in range(0, z.size, block):
-        rows = slice(start, start + block)
-        propagate.fill(s, beams, solution, transfer(solution.line.k, z[rows]), x, out[:, rows])
-
-
-def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
-    """The period of a periodic boundary; refused where neighbouring beams overlap."""
-    if period is None:
-        dx = propagate.even_spacing(x)
-        if not dx:
-            raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
-        period = dx * x.size
-    value = as_number(period, "period", positive=True)
-    k0 = float(checks.k0(slab, frequency)[0])
-    across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
-    seam = float(max(abs(across[0]), abs(across[-1])) / np.abs(across).max())
-    if seam > 1e-2:
-        raise ValueError(
-            f"period: expected a grid wide enough for the beam, got {value:.6g} m, at whose ends the launched |p| is "
-            f"still {seam:.2g} of its largest"
-        )
-    return value
-
-
-def _announce(p: np.ndarray, errors: np.ndarray, rtol: float) -> None:
-    """Nothing that is not finite leaves, and nothing above rtol leaves without a word."""
-    if not np.all(np.isfinite(p)):
-        raise ValueError(
-            "the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow"
-        )
-    worst = np.max(errors, initial=0.0, where=np.isfinite(errors))
-    if worst > rtol:
-        warnings.warn(
-            f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
-            AccuracyWarning,
-            stacklevel=3,
-        )
+    asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    p = np.empty(asked.shape, complex)
+    for i, _ in enumerate(progress(asked.frequency)):
+        asked.choose(i)
+        asked.fill(slice(None), slice(None), p[i])
+    asked.announce()
+    return asked.dataset(p)
 
 
 def beam_width(

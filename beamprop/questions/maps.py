@@ -1,0 +1,138 @@
+"""The question of a field map, checked once: for a dataset in memory, or for a file that is written block by block."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import datasets, propagate
+from ..beam import Beam
+from ..fan import Fan, fan
+from ..media import Slab, as_number
+from ..scene import Scene, scene
+from . import checks
+
+
+class AccuracyWarning(UserWarning):
+    """A field whose estimated error is above the asked rtol."""
+
+
+class FieldMap:
+    """p on (frequency, angle, z, x), to be made in parts: first `choose` a frequency, then `fill` planes of it."""
+
+    def __init__(
+        self,
+        slab: Slab,
+        beam: Beam,
+        frequency: Any,
+        x: Any,
+        z: Any,
+        angle: Any,
+        boundary: str,
+        period: float | None,
+        rtol: float,
+    ) -> None:
+        checks.instance(slab, Slab, "slab")
+        checks.instance(beam, Beam, "beam")
+        f, xs, zs = checks.axis(frequency, "frequency", positive=True), checks.axis(x, "x"), checks.axis(z, "z")
+        angles, self.rtol = checks.angles(angle, beam), checks.rtol(rtol)
+        if boundary not in ("open", "periodic"):
+            raise ValueError(f"boundary: expected 'open' or 'periodic', got {boundary!r}")
+        if np.min(zs) < beam.z0:
+            raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+        self.slab, self.beam, self.boundary, self.period = slab, beam, boundary, period
+        self.axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
+        self.frequency, self.angles, self.z, self.x = (np.atleast_1d(v) for v in self.axes.values())
+        if boundary == "periodic":
+            self.period = _period(period, self.x, beam, slab, self.frequency)
+        elif period is not None:
+            raise ValueError(f"period: expected none with boundary='open', got {period!r}")
+        self.dims, self.pick = checks.dims(**self.axes)
+        self.shape = tuple(v.size for v in (self.frequency, self.angles, self.z, self.x))
+        self.errors = np.full(self.shape[:2], np.nan)
+        self._scene: Scene
+        self._fan: Fan
+        self._solution: propagate.Solution
+
+    def choose(self, i: int) -> None:
+        """The line of integration, and the error, for frequency i."""
+        s = scene(self.slab, float(self.frequency[i]))
+        beams = fan(self.beam, self.angles, s.k0, self.rtol * 1e-5)
+        if self.period is None:
+            transfer = propagate.through(s, self.beam.z0)
+            solution = propagate.choose_line(s, beams, transfer, self.x, self.z, self.rtol)
+            self.errors[i] = solution.error
+        else:
+            solution = propagate.periodic_solution(s, beams, self.x, self.period)
+        self._scene, self._fan, self._solution = s, beams, solution
+
+    def fill(self, planes: slice, angles: slice, out: np.ndarray) -> None:
+        """p of the chosen frequency into out (A, Z, X), whose (Z, X) is contiguous, at some planes and angles."""
+        s, line = self._scene, self._solution.line
+        transfer, part, z = propagate.through(s, self.beam.z0), self._fan.part(angles), self.z[planes]
+        # the response, and with many angles the fields that are mixed
+        row = max(1, line.k.size, 0 if part.mix is None else part.angles.size * self.x.size)
+        block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
+        for start in range(0, z.size, block):
+            rows = slice(start, start + block)
+            propagate.fill(s, part, self._solution, transfer(line.k, z[rows]), self.x, out[:, rows])
+        with np.errstate(over="ignore", invalid="ignore"):
+            surely = np.isfinite(out.sum())  # then no term is not finite
+        if not surely and not np.all(np.isfinite(out)):
+            raise ValueError(
+                "the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow"
+            )
+
+    def announce(self) -> None:
+        """Nothing above rtol leaves without a word."""
+        worst = np.max(self.errors, initial=0.0, where=np.isfinite(self.errors))
+        if worst > self.rtol:
+            warnings.warn(
+                f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {self.rtol:.1e}",
+                AccuracyWarning,
+                stacklevel=3,
+            )
+
+    def dataset(self, p: np.ndarray | None) -> xr.Dataset:
+        """The labelled answer; without p, all else."""
+        variables: dict[str, Any] = {} if p is None else {"p": (self.dims, p[self.pick])}
+        if self.boundary == "open":
+            few = tuple(d for d in self.dims if d in ("frequency", "angle"))
+            variables["error_estimate"] = (few, self.errors[self.pick[:2]])
+        ds = datasets.make(
+            variables,
+            checks.coords(**self.axes),
+            "field",
+            self.frequency,
+            slab=self.slab,
+            beam=self.beam,
+            boundary=self.boundary,
+            period=self.period,
+            rtol=self.rtol,
+        )
+        ds.attrs |= {"boundary": self.boundary, "slab_thickness": self.slab.thickness}
+        if self.period is not None:
+            ds.attrs["period"] = self.period
+        return ds
+
+
+def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
+    """The period of a periodic boundary; refused where neighbouring beams overlap."""
+    if period is None:
+        dx = propagate.even_spacing(x)
+        if not dx:
+            raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
+        period = dx * x.size
+    value = as_number(period, "period", positive=True)
+    k0 = float(checks.k0(slab, frequency)[0])
+    across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
+    seam = float(max(abs(across[0]), abs(across[-1])) / np.abs(across).max())
+    if seam > 1e-2:
+        raise ValueError(
+            f"period: expected a grid wide enough for the beam, got {value:.6g} m, at whose ends the launched |p| is "
+            f"still {seam:.2g} of its largest"
+        )
+    return value
