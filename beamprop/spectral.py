@@ -244,51 +244,51 @@ def _is_even(x: np.ndarray) -> bool:
 
 
 class _Plan(NamedTuple):
-    """FFTs of two sources (rows, n) into two results: sum_m c_m e^{2 pi i m j/n}, unscaled."""
+    """Two FFTs: sum_m c_m e^{2 pi i m j/n} of source[0] (rows, n) into result[0], e^{-2 pi i m j/n} of 1; unscaled."""
 
-    sources: tuple[np.ndarray, np.ndarray]
-    results: tuple[np.ndarray, np.ndarray]
+    source: np.ndarray
+    result: np.ndarray
     run: tuple[Any, Any]
 
 
 @functools.lru_cache(maxsize=16)
-def _inverse_plan(rows: int, n: int) -> _Plan:
+def _plan(rows: int, n: int) -> _Plan:
     """Buffers and the transforms between them. Out of place: faster where FFTW estimates, and a source keeps its zeros."""
     try:
         import pyfftw
     except ImportError:  # no wheel for this platform
         return _scipy_plan(rows, n)
-    a, b, c, d = (pyfftw.zeros_aligned((rows, n), dtype="complex128") for _ in range(4))
+    source, result = (pyfftw.zeros_aligned((2, rows, n), dtype="complex128") for _ in range(2))
     # ESTIMATE plans in less than a millisecond; MEASURE takes 0.2 to 0.6 s a shape and gains no more than a fifth
-    options: Any = {"axes": (1,), "direction": "FFTW_BACKWARD", "flags": ("FFTW_ESTIMATE",)}
-    one, two = pyfftw.FFTW(a, c, **options), pyfftw.FFTW(b, d, **options)
-    return _Plan((a, b), (c, d), (one.execute, two.execute))
+    plans = [
+        pyfftw.FFTW(source[i], result[i], axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
+        for i, direction in enumerate(("FFTW_BACKWARD", "FFTW_FORWARD"))
+    ]
+    return _Plan(source, result, (plans[0].execute, plans[1].execute))
 
 
 def _scipy_plan(rows: int, n: int) -> _Plan:
     """The same by scipy, a third slower."""
     import scipy.fft
 
-    a, b, c, d = (np.zeros((rows, n), complex) for _ in range(4))
+    source, result = (np.zeros((2, rows, n), complex) for _ in range(2))
 
-    def inverse(source: np.ndarray, result: np.ndarray) -> None:
-        result[...] = scipy.fft.ifft(source, axis=1, norm="forward")
+    def backward() -> None:
+        result[0] = scipy.fft.ifft(source[0], axis=1, norm="forward")
 
-    return _Plan((a, b), (c, d), (lambda: inverse(a, c), lambda: inverse(b, d)))
+    def forward() -> None:
+        result[1] = scipy.fft.fft(source[1], axis=1)
 
-
-def _twice(values: np.ndarray) -> np.ndarray:
-    """Every value twice: a factor for complex numbers seen as pairs of real ones, half the work of a complex product."""
-    return np.repeat(values, 2)
+    return _Plan(source, result, (backward, forward))
 
 
 def transform(coefficients: np.ndarray) -> np.ndarray:
     """sum_m c_m e^{2 pi i m j/n} along the last axis, unscaled."""
     flat = coefficients.reshape(-1, coefficients.shape[-1])
-    plan = _inverse_plan(*flat.shape)
-    plan.sources[0][...] = flat
+    plan = _plan(*flat.shape)
+    plan.source[0] = flat
     plan.run[0]()
-    return plan.results[0].reshape(coefficients.shape).copy()
+    return plan.result[0].reshape(coefficients.shape).copy()
 
 
 def fast_length(n: int) -> int:
@@ -318,20 +318,20 @@ def next_smooth(n: int) -> int:
 
 
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
-    """h amplitude into bins first, first + 1, ... modulo n: exact aliasing, for the output has n points a window.
+    """h (rows, count) times each amplitude (2, rows or 1, count), into bins first, first + 1, ... modulo n of out (2, rows, n).
 
-    Bins beside them are left as they are.
+    Exact aliasing, for the output has n points a window. Bins beside them are left as they are.
     """
-    # plain: out = 0; out[:, bins % n] += h * amplitude
-    n, count, start = out.shape[1], h.shape[1], 0
+    # plain: out = 0; out[..., bins % n] += h * amplitude
+    n, count, start = out.shape[2], h.shape[1], 0
     while start < count:
         here = (first + start) % n
         part = slice(start, min(count, start + n - here, n if start < n else count))
-        into = out[:, here : here + part.stop - part.start]
+        into = out[..., here : here + part.stop - part.start]
         if start < n:
-            np.multiply(h[:, part], amplitude[part], out=into)
+            np.multiply(h[:, part], amplitude[..., part], out=into)
         else:
-            into += h[:, part] * amplitude[part]
+            into += h[:, part] * amplitude[..., part]
         start = part.stop
 
 
@@ -351,32 +351,30 @@ def fft_sum(
     """
     shape = (*right.shape[:-1], h.shape[0], x.size)
     turn = np.exp(1j * (line.first + np.arange(line.k.size)) * line.step * x[0])
+    amplitude = np.stack([np.atleast_2d(right) * turn, np.atleast_2d(left) / turn])  # (2, B, n)
+    grow = np.exp(line.sigma * x)
+    scale = np.repeat([grow, 1 / grow], 2, axis=1)  # for complex numbers seen as pairs of real ones
     leftward = bool(np.any(left))
-    if right.ndim == 1:
-        forth, back, right, left = h, h, right * turn, left / turn
-    else:
-        forth, back = ((v[:, None] * h).reshape(-1, h.shape[1]) for v in (right, left))
-        right, left = turn, 1 / turn
-    grow = _twice(np.exp(line.sigma * x))
-    decay, last = _twice(np.exp(-2 * line.sigma * x)), line.first + line.k.size - 1
-    flat = np.empty((forth.shape[0], x.size), complex) if out is None else out.reshape(-1, x.size)
-    rows = max(1, min(flat.shape[0], 2**14 // n))
-    plan = _inverse_plan(rows, n)
-    for source in plan.sources:
-        source[...] = 0
+    planes, total = h.shape[0], amplitude.shape[1] * h.shape[0]
+    flat = np.empty((total, x.size), complex) if out is None else out.reshape(-1, x.size)
     real = flat.view(float)
-    parts = [result[:, : x.size].view(float) for result in plan.results]
-    for start in range(0, flat.shape[0], rows):
-        block = slice(start, min(start + rows, flat.shape[0]))
-        size = block.stop - block.start
-        to_right, to_left = (part[:size] for part in parts)
-        # plain: flat = grow ifft(right h) + ifft(left h, from the end on)/grow
-        _fold(forth[block], right, line.first, plan.sources[0][:size])
+    rows = max(1, min(total, 2**14 // n))
+    plan = _plan(rows, n)
+    plan.source[...] = 0
+    result = plan.result[..., : x.size].view(float)
+    # plain: flat = grow ifft(right h) + fft(left h)/grow
+    for start in range(0, total, rows):
+        stop = min(start + rows, total)
+        if amplitude.shape[1] == 1:
+            part, weights = h[start:stop], amplitude
+        else:
+            beam, plane = np.divmod(np.arange(start, stop), planes)
+            part, weights = h[plane], amplitude[:, beam]
+        _fold(part, weights, line.first, plan.source[:, : stop - start])
         plan.run[0]()
-        if leftward:  # into the bins -m: the same amplitudes from the end on
-            _fold(back[block, ::-1], left[::-1], -last, plan.sources[1][:size])
+        if leftward:
             plan.run[1]()
-            to_left *= decay
-            to_right += to_left
-        np.multiply(to_right, grow, out=real[block])
+            np.einsum("srx,sx->rx", result[:, : stop - start], scale, out=real[start:stop])
+        else:
+            np.multiply(result[0, : stop - start], scale[0], out=real[start:stop])
     return flat.reshape(shape)
