@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..conventions import principal_root
 from ..media import LayerValues
-from ..products import BLOCK, small_product
+from ..products import BLOCK, UNTHREADED, small_product
 from .layers import State, at_frequencies, several_layers
 
 TINY = 1e-300
@@ -41,7 +42,7 @@ class BlochPhase(NamedTuple):
 
     @property
     def phase(self) -> np.ndarray:
-        return self.reduced + np.pi * self.flip
+        return self.reduced + np.pi * self.flip if np.any(self.flip) else self.reduced
 
 
 def _renormalised(m: Matrix) -> Matrix:
@@ -162,7 +163,7 @@ def _fitted(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix |
     rows = max(1, BLOCK // (kx2.shape[1] * (degree + 1)))
     for start in range(0, kx2.shape[0], rows):
         part = slice(start, start + rows)
-        _polynomials(coefficients[part, :, : degree + 1], kx2[part] / radius[part], out[:, part])
+        _polynomials(coefficients[part, :, : degree + 1], kx2[part] * (1 / radius[part]), out[:, part])
     e11, e12, e21, e22 = out
     return Matrix(1.0, e11, e12, e21, e22, None)
 
@@ -179,6 +180,9 @@ def _polynomials(coefficients: np.ndarray, v: np.ndarray, out: np.ndarray) -> No
     powers = np.ones((v.shape[0], coefficients.shape[-1], v.shape[1]), complex)
     for k in range(1, powers.shape[1]):
         np.multiply(powers[:, k - 1], v, out=powers[:, k])
+    if coefficients[0].size * v.shape[1] <= UNTHREADED:
+        np.matmul(coefficients, powers, out=out.transpose(1, 0, 2))
+        return
     for i in range(v.shape[0]):
         out[:, i] = small_product(coefficients[i], powers[i])
 
@@ -196,7 +200,10 @@ def bloch_phase(m: Matrix) -> BlochPhase:
     ``sin(phase/2)^2 = -(trace/2 - 1)/2`` keeps full precision for thin cells; a scaled (opaque) cell has
     ``exp(-i phase) = x + sqrt(x^2 - 1)``, the larger root, with x = trace/2 taken with its growth.
     """
-    h = (m.e11 + m.e22) / 2
+    h = m.e11 + m.e22
+    h *= 0.5
+    if m.growth is None and (size := float(np.max(np.abs(h), initial=0.0))) < SMALL:
+        return BlochPhase(_small_phase(h, size), np.zeros(h.shape, bool))
     thick = np.zeros(h.shape, bool) if m.growth is None else np.broadcast_to(m.growth > 0, h.shape)
     calm = np.where(thick, 0.0, h) if m.growth is not None else h
     flip = ~thick & (calm.real < -1)
@@ -209,6 +216,49 @@ def bloch_phase(m: Matrix) -> BlochPhase:
         logarithm = m.growth + np.log(np.where(thick & (larger != 0), larger, 1.0))
         reduced = np.where(thick, 1j * logarithm, reduced)
     return BlochPhase(reduced, flip)
+
+
+#: Below this size of trace/2 - 1, and of the phase, power series stand for the functions: a dozen terms at most.
+SMALL = 0.1
+
+
+def _small_phase(h: np.ndarray, size: float) -> np.ndarray:
+    """The Bloch phase where |h| = |trace/2 - 1| <= size < SMALL."""
+    # plain: 2 arcsin(sqrt(y)), y = -h/2, turned to Im >= 0; arcsin(v)/v = sum_k (2k)!/(4^k (k!)^2 (2k + 1)) v^2k
+    y = h * -0.5
+    coefficients = [1.0]
+    odd = 1.0
+    while coefficients[-1] * (size / 2) ** (len(coefficients) - 1) > 1e-17:
+        k = len(coefficients)
+        odd *= (2 * k - 1) / (2 * k)
+        coefficients.append(odd / (2 * k + 1))
+    phase = _horner(coefficients, y)
+    phase *= 2 * principal_root(y)
+    np.negative(phase, out=phase, where=phase.imag < 0)
+    return phase
+
+
+def _horner(coefficients: list[float], v: np.ndarray) -> np.ndarray:
+    """sum_k coefficients_k v^k, from the last one on."""
+    out = v * coefficients[-1]
+    for c in coefficients[-2:0:-1]:
+        out += c
+        out *= v
+    out += coefficients[0]
+    return out
+
+
+def _exp_and_expm1(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(z) and exp(z) - 1, each with full relative precision: by a power series where |z| is small."""
+    size = float(np.max(np.abs(z), initial=0.0))
+    if size >= 3 * SMALL:
+        return np.exp(z), np.expm1(z)
+    coefficients = [1.0]
+    while coefficients[-1] * size ** (len(coefficients) - 1) > 1e-17:
+        coefficients.append(coefficients[-1] / (len(coefficients) + 1))
+    less = _horner(coefficients, z)
+    less *= z
+    return less + 1, less
 
 
 def faded(exponent: np.ndarray) -> np.ndarray:
@@ -224,15 +274,20 @@ def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) ->
     ``g = (Lambda + Lambda^2n)/(1 + Lambda)``, ``f = Lambda (1 - Lambda^2n)/(1 - Lambda^2)`` (n at the band edge): the
     Chebyshev form with its growth taken out and its cancellations done by hand.
     """
-    lam = np.exp(1j * b.reduced)
-    x2n = np.expm1(faded(2j * b.reduced * count))
-    x2 = np.expm1(2j * b.reduced)
-    edge = np.abs(x2) < TINY
-    ratio = np.where(edge, count, x2n / np.where(edge, 1.0, x2))
-    g = (lam + 1 + x2n) / (1 + lam)
-    f = ratio * (lam if m.growth is None else np.exp(1j * b.reduced + m.growth))
+    # plain: x2n = expm1(2i reduced n), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced), lam = exp(i reduced)
+    z = 1j * b.reduced
+    lam, x = _exp_and_expm1(z)
+    x2n = np.expm1(faded(z * (2 * count)))
+    share = x2n / (1 + lam)
+    edge = np.abs(x) < TINY
+    ratio = np.where(edge, count, share / np.where(edge, 1.0, x)) if np.any(edge) else share / x
+    f = ratio * (lam if m.growth is None else np.exp(z + m.growth))
     # f stands for f exp(growth) here, to meet E, which is kept divided by exp(growth)
-    sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
-    p = g * far.p + f * (sign * (m.e22 * far.p - m.e12 * far.q) - twice * far.p)
-    q = g * far.q + f * (sign * (m.e11 * far.q - m.e21 * far.p) - twice * far.q)
-    return State(p, q, far.log - 1j * b.phase * count)
+    p, q = m.e22 * far.p, m.e11 * far.q
+    p -= m.e12 * far.q
+    q -= m.e21 * far.p
+    if np.any(b.flip):
+        sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
+        p, q = sign * p - twice * far.p, sign * q - twice * far.q
+    g = 1 + share
+    return State(g * far.p + f * p, g * far.q + f * q, far.log - 1j * b.phase * count)

@@ -107,7 +107,8 @@ def normalised(state: State) -> State:
     """Take the state's size out into its logarithm."""
     size = np.abs(state.p) + np.abs(state.q)
     size = np.where((size > 0) & np.isfinite(size), size, 1.0)
-    return State(state.p / size, state.q / size, state.log + np.log(size))
+    scale = 1 / size
+    return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
 
 def at_frequencies(layers: LayerValues, rows: slice) -> LayerValues:

@@ -31,7 +31,7 @@ def _near(
 ) -> tuple[np.ndarray, State, list[Station]]:
     """kz in front, and the state at the near face that leaves a unit outgoing wave behind."""
     kz1 = outgoing_kz(kx, omega, *front)
-    kz2 = outgoing_kz(kx, omega, *behind)
+    kz2 = kz1 if _alike(front, behind) else outgoing_kz(kx, omega, *behind)
     exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
     near, stations = march(segments, omega, kx, exit_state, z)
     return kz1, near, stations
@@ -90,6 +90,11 @@ def solve(
         if z.size:
             inside = fill_inside(stations, omega, kx, z, near.log, per_incident)
     return Response(r, t, inside)
+
+
+def _alike(front: FluidValues, behind: FluidValues) -> bool:
+    """Whether both half-spaces are the same at all frequencies."""
+    return all(np.array_equal(a, b) for a, b in zip(front, behind, strict=True))
 
 
 def _has_vanishing_layer(segments: list[SegmentValues]) -> np.ndarray:
