@@ -7,6 +7,7 @@ with it the Bloch phase, has full relative precision; for an opaque one a = exp(
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -18,6 +19,11 @@ from ..products import BLOCK, UNTHREADED, small_product
 from .layers import State, at_frequencies, several_layers
 
 TINY = 1e-300
+#: Entries of matrices are kept below this.
+LARGE = 1e60
+LOG_LARGE = math.log(LARGE)
+#: Up to this size the number of statements is what an array costs.
+FEW = 2**11
 
 
 class Matrix(NamedTuple):
@@ -48,7 +54,7 @@ class BlochPhase(NamedTuple):
 def _renormalised(m: Matrix) -> Matrix:
     """Take size out of a matrix whose entries would overflow in the next products."""
     size = np.abs(m.e11) + np.abs(m.e12) + np.abs(m.e21) + np.abs(m.e22)
-    large = size > 1e60
+    large = size > LARGE
     if not np.any(large):
         return m
     size = np.where(large, size, 1.0)
@@ -103,6 +109,15 @@ def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> M
     """Matrix of one period, all layers at once and then pair by pair: (F, n)."""
     # plain: m = layer_N ... layer_2 layer_1, each [[C, A s], [-B s, C]]
     A, B, f = several_layers(layers, slice(None), omega * omega, kx2)
+    if f.growth is None and f.c.size <= FEW:
+        e = np.empty((2, 2, *f.c.shape), complex)
+        e[0, 0] = e[1, 1] = f.c
+        np.multiply(A, f.s, out=e[0, 1])
+        np.multiply(B, f.s, out=e[1, 0])
+        np.negative(e[1, 0], out=e[1, 0])
+        largest = 1 + 2 * float(np.max(np.abs(e), initial=0.0))
+        if len(f.c) * math.log(largest) < LOG_LARGE:
+            return _calm_product(e)
     m = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
     while (count := m.e11.shape[0]) > 1:
         even = count - count % 2
@@ -111,12 +126,29 @@ def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> M
     return _each(m, lambda v: v[0])
 
 
+def _calm_product(e: np.ndarray) -> Matrix:
+    """Product of I + E (2, 2, J, F, n) over the layers J, the first one nearest, where no product grows large."""
+    # plain: as `times`, for all four entries of all pairs in one statement
+    while (count := e.shape[2]) > 1:
+        even = count - count % 2
+        near, far = e[:, :, 0:even:2], e[:, :, 1:even:2]
+        pairs = far[:, :1] * near[:1]
+        pairs += far[:, 1:] * near[1:]
+        pairs += near
+        pairs += far
+        e = np.concatenate([pairs, e[:, :, even:]], axis=2) if count % 2 else pairs
+    (e11, e12), (e21, e22) = e[:, :, 0]
+    return Matrix(1.0, e11, e12, e21, e22, None)
+
+
 def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matrix:
     """Matrix of one period, near to far face: a polynomial in kx^2 where that is as exact, else layer by layer."""
-    kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex)
-    if kx2.shape[1] >= 4 * CIRCLE and (fitted := _fitted(layers, omega, kx2)) is not None:
+    kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex, copy=False)
+    count = len(layers.thickness)
+    many = kx2.shape[1] >= 2 * CIRCLE and kx2.size * count > FEW
+    if many and (fitted := _fitted(layers, omega, kx2)) is not None:
         return fitted
-    block = max(1, BLOCK // len(layers.thickness))
+    block = max(1, BLOCK // count)
     if kx2.size <= block:
         return _layer_product(layers, omega, kx2)
     out = np.empty((4, *kx2.shape), complex)
@@ -248,6 +280,16 @@ def _horner(coefficients: list[float], v: np.ndarray) -> np.ndarray:
     return out
 
 
+def _expm1(z: np.ndarray) -> np.ndarray:
+    """exp(z) - 1, where |z| >= 1 as it stands here: the rounding of z is no less than what is lost."""
+    out = np.exp(z)
+    out -= 1
+    near = np.abs(z) < 1
+    if np.any(near):
+        out[near] = np.expm1(z[near])
+    return out
+
+
 def _exp_and_expm1(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """exp(z) and exp(z) - 1, each with full relative precision: by a power series where |z| is small."""
     size = float(np.max(np.abs(z), initial=0.0))
@@ -277,7 +319,7 @@ def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) ->
     # plain: x2n = expm1(2i reduced n), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced), lam = exp(i reduced)
     z = 1j * b.reduced
     lam, x = _exp_and_expm1(z)
-    x2n = np.expm1(faded(z * (2 * count)))
+    x2n = _expm1(faded(z * (2 * count)))
     share = x2n / (1 + lam)
     edge = np.abs(x) < TINY
     ratio = np.where(edge, count, share / np.where(edge, 1.0, x)) if np.any(edge) else share / x
@@ -290,4 +332,7 @@ def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) ->
         sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
         p, q = sign * p - twice * far.p, sign * q - twice * far.q
     g = 1 + share
-    return State(g * far.p + f * p, g * far.q + f * q, far.log - 1j * b.phase * count)
+    p, q = f * p, f * q
+    p += g * far.p
+    q += g * far.q
+    return State(p, q, far.log - 1j * b.phase * count)

@@ -106,7 +106,9 @@ def layer_back(state: State, A: np.ndarray, B: np.ndarray, f: Entire) -> State:
 def normalised(state: State) -> State:
     """Take the state's size out into its logarithm."""
     size = np.abs(state.p) + np.abs(state.q)
-    size = np.where((size > 0) & np.isfinite(size), size, 1.0)
+    usual = (size > 0) & np.isfinite(size)
+    if not usual.all():
+        size = np.where(usual, size, 1.0)
     scale = 1 / size
     return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
