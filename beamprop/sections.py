@@ -21,7 +21,7 @@ from .propagate import Transfer
 from .response import solve
 from .scene import Scene, at_frequency
 from .spectral import Line, OpenPlan, Reach
-from .widths import HALF_LEVEL, centroid, full_width
+from .widths import HALF_LEVEL, centroid, crossings, full_width
 
 #: h(kx) at one plane for each frequency: (F, n) -> (F, n).
 Plane = Callable[[np.ndarray], np.ndarray]
@@ -36,11 +36,12 @@ NEAR_PEAK, NEAR_EDGE = 1e-6, 1e-8
 
 
 class Measures(NamedTuple):
-    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m]."""
+    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m], how often |p| crosses the level in the window."""
 
     width: np.ndarray
     peak: np.ndarray
     centroid: np.ndarray
+    crossings: np.ndarray
 
 
 def far_face(s: Scene, z0: float) -> Plane:
@@ -174,7 +175,8 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     for i in np.flatnonzero(~good):
         one = at_frequency(s, int(i))
         found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
-        out.width[i], out.peak[i], out.centroid[i] = found
+        for values, value in zip(out, found, strict=True):
+            values[i] = value
     return out
 
 
@@ -225,7 +227,8 @@ def _measured(
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     good &= np.nan_to_num(error, nan=1.0) <= rtol
-    return Measures(edges[:, 1] - edges[:, 0], peak, place), good
+    met = np.count_nonzero(np.diff(size > level * peak[:, None], axis=-1), axis=-1)
+    return Measures(edges[:, 1] - edges[:, 0], peak, place, met), good
 
 
 def _crossings(
@@ -292,8 +295,8 @@ def _newton_level(
 
 def _measured_alone(
     s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
-) -> tuple[float, float, float]:
-    """Width, peak and centroid across the plane z, in a window that grows until its edges are below the level."""
+) -> tuple[float, float, float, int]:
+    """Width, peak, centroid and crossings across the plane z, in a window that grows until its edges are below the level."""
     planes = np.array([z])
     batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
     middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
@@ -309,7 +312,7 @@ def _measured_alone(
         half *= 2
     evaluate = _between(s, beam, solution.line, h)
     found = full_width(x, p, level, evaluate)
-    return found.width, found.peak, centroid(x, p)
+    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak)
 
 
 def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
@@ -330,16 +333,17 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
-    """Widths at all frequencies of a scene, at one angle."""
+def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray]:
+    """Widths at all frequencies of a scene, at one angle; and how often the level is met in the four planes, (4, F)."""
     wavelengths = 2 * np.pi / s.k0
 
-    def free(distance: np.ndarray) -> np.ndarray:
+    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
         route = Route(alone, without(s, distance), propagate.free, distance, distance, False)
-        return measure(route, beam, rtol).width
+        found = measure(route, beam, rtol)
+        return found.width, found.crossings
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
@@ -347,13 +351,15 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
     through = Route(s, far_face(s, beam.z0), lambda one: propagate.through(one, beam.z0), face, face - beam.z0, True)
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
-    return Row(launch, near, far.width, air, far.peak, far.centroid)
+    widths, met = zip(launch, near, (far.width, far.crossings), air, strict=True)
+    return Row(*widths, far.peak, far.centroid), np.stack(met)
 
 
-def _launch_widths(s: Scene, beam: Beam) -> np.ndarray:
-    """Widths of the launch profile itself; |p| does not depend on the frequency."""
+def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray]:
+    """Widths of the launch profile itself, and crossings; |p| does not depend on the frequency."""
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     k0 = float(s.k0[0])
     x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
-    found = full_width(x, beam.profile(x, k0), level, lambda at: beam.profile(at, k0))
-    return np.full(s.k0.shape, found.width)
+    p = beam.profile(x, k0)
+    found = full_width(x, p, level, lambda at: beam.profile(at, k0))
+    return np.full(s.k0.shape, found.width), np.full(s.k0.shape, crossings(p, level * found.peak))

@@ -241,6 +241,54 @@ def test_several_crossings_are_said():
     assert ds.crossings.sel(side="transmitted") == 4
 
 
+def two_humps():
+    x = np.linspace(-0.3, 0.3, 601)
+    return bp.Profile(x, np.exp(-(((x - 0.12) / 0.03) ** 2)) + np.exp(-(((x + 0.12) / 0.03) ** 2)))
+
+
+@pytest.mark.parametrize("beam", [two_humps(), bp.Slits(0.08, 0.3, z0=-0.02)])  # slits: one frequency at a time
+def test_widths_of_two_humps_say_so(beam):
+    """As often as a field on a fine grid crosses it; all four planes are named."""
+    slab = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01)
+    with pytest.warns(RuntimeWarning, match="half level is met up to") as said:
+        ds = bp.beam_width(slab, beam, [8000.0, 9000.0], rtol=1e-5)
+    (message,) = [str(w.message) for w in said]
+    x = np.linspace(-0.4, 0.4, 4001)
+    planes = {"fwhm_launch": beam.z0, "fwhm_in": 0.0, "fwhm_out": 0.01}
+    met = []
+    for name, z in planes.items():
+        free = bp.Slab.uniform(bp.AIR, 0.01) if name == "fwhm_in" else slab
+        for f in ds.frequency.values:
+            p = beam.profile(x, K0) if z == beam.z0 else bp.field(free, beam, f, x, z, rtol=1e-5).p.values
+            met.append(np.count_nonzero(np.diff(np.abs(p) > np.abs(p).max() / 2)))
+    assert max(met) > 2
+    assert f"up to {max(met)} times" in message
+    assert message.endswith(": fwhm_launch, fwhm_in, fwhm_out, fwhm_air")
+
+
+def test_a_plain_beam_says_nothing():
+    """The paper's lossy slab and one without loss meet the half level twice (a warning is an error here)."""
+    for cell in (bp.lmmd_cell(), bp.lmmd_cell(0.05, 0.0)):
+        bp.beam_width(bp.Slab(cell, 450), bp.GaussianBeam(0.096), [2300.0, 2500.0, 2700.0])
+
+
+def test_crossings_alone_and_together():
+    """Sampled on one window at once, and in a window that grows: the same number."""
+    from beamprop import propagate, sections
+    from beamprop.scene import at_frequency, scenes
+
+    slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
+    s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
+    face = np.full(3, slab.thickness)
+    route = sections.Route(s, sections.far_face(s, 0.0), lambda one: propagate.through(one, 0.0), face, face, True)
+    together = sections.measure(route, beam, 1e-6)
+    for i in range(3):
+        one = at_frequency(s, i)
+        alone = sections._measured_alone(one, beam, propagate.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        assert alone[3] == together.crossings[i] == 4
+        assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
+
+
 # --- measured profiles ------------------------------------------------------------------------------------
 
 
