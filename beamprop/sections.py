@@ -22,7 +22,7 @@ from .propagate import Transfer
 from .response import solve
 from .scene import Scene, at_frequency
 from .spectral import Line, OpenPlan, Reach
-from .widths import HALF_LEVEL, centroid, full_width
+from .widths import HALF_LEVEL, centroid, crossings, full_width
 
 #: h(kx) at one plane for each frequency: (F, n) -> (F, n).
 Plane = Callable[[np.ndarray], np.ndarray]
@@ -37,11 +37,12 @@ NEAR_PEAK, NEAR_EDGE = 1e-6, 1e-8
 
 
 class Measures(NamedTuple):
-    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m]."""
+    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m], how often |p| crosses the level in the window."""
 
     width: np.ndarray
     peak: np.ndarray
     centroid: np.ndarray
+    crossings: np.ndarray
 
 
 def far_face(s: Scene, z0: float) -> Plane:
@@ -69,49 +70,72 @@ def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]
     A plane wave of amplitude h lands at -d(arg h)/dkx; the beam's strong plane waves span the window.
     """
     lo, hi = beam.band(s.k0, 0.3)
+    even = bool(np.all(lo == -hi))  # h is even in kx too: half of the plane waves show all
     k0 = s.k0[:, None]
-    k = np.clip(np.linspace(lo, hi, 41, axis=-1), -0.98 * k0, 0.98 * k0)
+    k = np.clip(np.linspace(0 * lo if even else lo, hi, 21 if even else 41, axis=-1), -0.98 * k0, 0.98 * k0)
     small = 1e-4 * k0
-    h = plane(np.concatenate([k - small, k, k + small], axis=-1).astype(complex))
-    low, middle, high = np.split(h, 3, axis=-1)
-    size = np.abs(middle)
+    low, high = np.split(plane(np.concatenate([k - small, k + small], axis=-1).astype(complex)), 2, axis=-1)
+    twice = low + high
+    size = np.abs(twice)
     strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > 0)
-    slope = np.imag((high - low) / np.where(strong, 2 * small * middle, 1.0))
+    slope = np.imag((high - low) / np.where(strong, small * twice, 1.0))
     shift = np.clip(np.where(strong, -slope, 0.0), -1e4 / k0, 1e4 / k0)
+    if even:
+        shift, strong = np.concatenate([shift, -shift], axis=-1), np.concatenate([strong, strong], axis=-1)
     most, least = shift.max(-1, where=strong, initial=-np.inf), shift.min(-1, where=strong, initial=np.inf)
     most, least = (np.where(np.isfinite(v), v, 0.0) for v in (most, least))
     return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
 
 
+#: Exponentials on an even line are products of two small tables, this many steps apart.
+STEP = 12
+
+
 class Modes(NamedTuple):
-    """p(x) = sum right e^{ikx} + left e^{-ikx}, x from the beam's centre; arrays (F, n)."""
+    """p(x) = sum right e^{ikx} + left e^{-ikx} over an even line, x from the beam's centre; arrays (F, n)."""
 
     line: Line
     right: np.ndarray
     left: np.ndarray
 
-    def at(self, x: np.ndarray, bend: bool = True) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """p, dp/dx and, if asked for, d2p/dx2 at positions (F, m)."""
-        # plain: sums over k of (a + b), i k (a - b), -k^2 (a + b) with a = right e^{ikx}, b = left e^{-ikx}
+    def slopes(self, order: int) -> np.ndarray:
+        """Amplitudes of p, dp/dx, ... up to an order: right (ik)^j, then conj(left (-ik)^j); (F, 2 (order + 1), n)."""
+        rows = order + 1
+        out = np.empty((self.right.shape[0], 2 * rows, self.right.shape[1]), complex)
         ik = 1j * self.line.k
-        phase = np.exp(ik[:, None] * x[..., None])
-        plus = self.right[:, None] * phase
-        minus = self.left[:, None] / phase
-        difference = plus - minus
-        plus += minus
-        slope = np.einsum("fmk,fk->fm", difference, ik)
-        return plus.sum(-1), slope, np.einsum("fmk,fk->fm", plus, ik * ik) if bend else slope
+        out[:, 0], out[:, rows] = self.right, np.conj(self.left)
+        back = -np.conj(ik)
+        for j in range(1, rows):
+            np.multiply(out[:, j - 1], ik, out=out[:, j])
+            np.multiply(out[:, rows + j - 1], back, out=out[:, rows + j])
+        return out
+
+    def at(self, x: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """p and its slopes at positions (F, m), from their amplitudes: (order + 1, F, m)."""
+        # plain: sums over k of (ik)^j (right e^{ikx} + (-1)^j left e^{-ikx}). With k = m ds - i sigma, e^{ikx} is a power of
+        # e^{i ds x} times e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
+        line, n = self.line, self.line.k.shape[-1]
+        angle = 1j * (np.asarray(line.step)[:, None] * x)[..., None]
+        coarse = np.exp(angle * (line.first + np.arange(0, n, STEP)))
+        powers = (coarse[..., None] * np.exp(angle * np.arange(STEP))[..., None, :]).reshape(*x.shape, -1)[..., :n]
+        sums = np.moveaxis(powers @ np.swapaxes(slopes, 1, 2), -1, 0)
+        rows = sums.shape[0] // 2
+        grow = np.exp(np.asarray(line.sigma)[:, None] * x)
+        return sums[:rows] * grow + np.conj(sums[rows:]) / grow
 
     def value(self, x: np.ndarray) -> np.ndarray:
         """p at positions (F, m)."""
-        phase = np.exp(1j * self.line.k[:, None] * x[..., None])
-        return np.einsum("fmk,fk->fm", phase, self.right) + np.einsum("fmk,fk->fm", 1 / phase, self.left)
+        return self.at(x, self.slopes(0))[0]
 
 
-def _modes(s: Scene, beam: Beam, plane: Plane, line: Line) -> Modes:
-    h = plane(line.k)
-    right, left = spectral.amplitudes(line, lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
-    return Modes(line, right * h, left * h)
+def _both_modes(s: Scene, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Modes, Modes]:
+    """The plane waves at the plane, on a line and on another to judge it by; one response for both."""
+    lines = spectral.open_line(plan), spectral.open_line(plan.other())
+    k, weight = (np.concatenate([line[i] for line in lines], axis=-1) for i in (0, 1))
+    h = plane(k)
+    right, left = spectral.amplitudes(Line(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    right, left, n = right * h, left * h, lines[0].k.shape[-1]
+    return Modes(lines[0], right[:, :n], left[:, :n]), Modes(lines[1], right[:, n:], left[:, n:])
 
 
 def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
@@ -144,7 +168,7 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
         middle, half = landing(s, beam, route.plane)
         plan = _plan(s, beam, route.path, middle, half, rtol)
         if np.max(plan.band * plan.window) < 2 * np.pi * 20_000:
-            first, second = (_modes(s, beam, route.plane, spectral.open_line(p)) for p in (plan, plan.other()))
+            first, second = _both_modes(s, beam, route.plane, plan)
             out, good = _measured(first, second, plan, middle - beam.centre, half, level, rtol)
             out = out._replace(centroid=out.centroid + beam.centre)
             if route.guided:
@@ -152,7 +176,8 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     for i in np.flatnonzero(~good):
         one = at_frequency(s, int(i))
         found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
-        out.width[i], out.peak[i], out.centroid[i] = found
+        for values, value in zip(out, found, strict=True):
+            values[i] = value
     return out
 
 
@@ -203,7 +228,8 @@ def _measured(
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     good &= np.nan_to_num(error, nan=1.0) <= rtol
-    return Measures(edges[:, 1] - edges[:, 0], peak, place), good
+    met = np.count_nonzero(np.diff(size > level * peak[:, None], axis=-1), axis=-1)
+    return Measures(edges[:, 1] - edges[:, 0], peak, place, met), good
 
 
 def _crossings(
@@ -235,9 +261,9 @@ def _crossings(
 
 def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     """Where |p|^2 is largest within a sample of start."""
-    x = start
+    x, slopes = start, modal.slopes(2)
     for _ in range(5):
-        p, slope, bend = (v[:, 0] for v in modal.at(x[:, None]))
+        p, slope, bend = modal.at(x[:, None], slopes)[..., 0]
         first = (p.conj() * slope).real
         curve = np.abs(slope) ** 2 + (p.conj() * bend).real
         step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
@@ -251,9 +277,9 @@ def _newton_level(
     modal: Modes, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
 ) -> np.ndarray:
     """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
-    x, size = guess, np.abs(outer - inner)
+    x, size, slopes = guess, np.abs(outer - inner), modal.slopes(1)
     for _ in range(9):
-        p, slope, _ = modal.at(x, bend=False)
+        p, slope = modal.at(x, slopes)
         excess = np.abs(p) ** 2 - target[:, None] ** 2
         inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
         steep = 2 * (p.conj() * slope).real
@@ -270,8 +296,8 @@ def _newton_level(
 
 def _measured_alone(
     s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
-) -> tuple[float, float, float]:
-    """Width, peak and centroid across the plane z, in a window that grows until its edges are below the level."""
+) -> tuple[float, float, float, int]:
+    """Width, peak, centroid and crossings across the plane z, in a window that grows until its edges are below the level."""
     planes = np.array([z])
     batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
     middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
@@ -287,7 +313,7 @@ def _measured_alone(
         half *= 2
     evaluate = _between(s, beam, solution.line, h)
     found = full_width(x, p, level, evaluate)
-    return found.width, found.peak, centroid(x, p)
+    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak)
 
 
 def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
@@ -308,16 +334,17 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
-    """Widths at all frequencies of a scene, at one angle."""
+def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray]:
+    """Widths at all frequencies of a scene, at one angle; and how often the level is met in the four planes, (4, F)."""
     wavelengths = 2 * np.pi / s.k0
 
-    def free(distance: np.ndarray) -> np.ndarray:
+    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
         route = Route(alone, without(s, distance), propagate.free, distance, distance, False)
-        return measure(route, beam, rtol).width
+        found = measure(route, beam, rtol)
+        return found.width, found.crossings
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
@@ -325,13 +352,15 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> Row:
     through = Route(s, far_face(s, beam.z0), lambda one: propagate.through(one, beam.z0), face, face - beam.z0, True)
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
-    return Row(launch, near, far.width, air, far.peak, far.centroid)
+    widths, met = zip(launch, near, (far.width, far.crossings), air, strict=True)
+    return Row(*widths, far.peak, far.centroid), np.stack(met)
 
 
-def _launch_widths(s: Scene, beam: Beam) -> np.ndarray:
-    """Widths of the launch profile itself; |p| does not depend on the frequency."""
+def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray]:
+    """Widths of the launch profile itself, and crossings; |p| does not depend on the frequency."""
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     k0 = float(s.k0[0])
     x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
-    found = full_width(x, beam.profile(x, k0), level, lambda at: beam.profile(at, k0))
-    return np.full(s.k0.shape, found.width)
+    p = beam.profile(x, k0)
+    found = full_width(x, p, level, lambda at: beam.profile(at, k0))
+    return np.full(s.k0.shape, found.width), np.full(s.k0.shape, crossings(p, level * found.peak))

@@ -91,6 +91,11 @@ def _crossing(
     return (inner + outer) / 2
 
 
+def crossings(p: np.ndarray, target: float) -> int:
+    """How often the samples of |p| cross a level; 2 for a plain beam."""
+    return int(np.count_nonzero(np.diff(np.abs(p) > target)))
+
+
 def centroid(x: np.ndarray, p: np.ndarray) -> float:
     """Centroid of |p|^2 over the sampled window (trapezoid rule) [m]."""
     power = np.abs(p) ** 2

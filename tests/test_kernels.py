@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import fan, products, response, scene, sections, spectral
+from beamprop import conventions, fan, products, response, scene, sections, spectral
 from beamprop.media import layer_values
 from beamprop.response import cells, inside, march
 from beamprop.response import layers as one
@@ -46,6 +46,37 @@ def random_slab(rng):
 
 def random_kx(rng, count, frequencies=1):
     return 90 * rng.random((frequencies, count)) - 2j * rng.random((frequencies, 1))
+
+
+# --- roots ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e6])
+def test_principal_root(scale):
+    rng = np.random.default_rng(4)
+    w = rng.normal(size=500) + 1j * scale * rng.normal(size=500)
+    w = np.concatenate([w, w.real + 0j, w.real - 0j, [0.0, 1e-40j]])
+    root = conventions.principal_root(w)
+    np.testing.assert_allclose(root, np.sqrt(w), rtol=1e-15)
+    assert np.array_equal(root[500:].real == 0, np.sqrt(w[500:]).real == 0)
+
+
+@pytest.mark.parametrize("b", [46.0, -46.0, 46 + 3j, -46 + 1e-6j, 80j, 1e-3 + 5j])
+@pytest.mark.parametrize("depth", [0.0, 1e-12, 1.0, 60.0])
+def test_the_root_with_a_branch(b, depth):
+    """Against a root for each branch point, e^{i pi/4} sqrt(-i w), whose cut is along -i."""
+    rng = np.random.default_rng(5)
+    kx = rng.uniform(-100, 100, 1000) + 1j * depth * rng.normal(size=1000)
+    b = complex(b)
+
+    def root(w):
+        return np.exp(0.25j * np.pi) * np.sqrt(w * -1j)
+
+    found = conventions._root_of_product(kx, np.asarray(b))
+    wanted = root(b - kx) * root(b + kx)
+    assert np.max(np.abs(found / wanted - 1)) < 5e-15
+    if depth == 0 and b.imag == 0:
+        assert np.all((found.real == 0) | (found.imag == 0))
 
 
 # --- cells ------------------------------------------------------------------------------------------------
@@ -103,6 +134,48 @@ def test_the_polynomial_serves_the_papers_cell_and_refuses_a_thick_one():
 
 
 # --- the march and the field inside -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-5, 1e-2, 0.09])
+def test_small_bloch_phases(size):
+    rng = np.random.default_rng(6)
+    h = size * np.sqrt(rng.random((2, 300))) * np.exp(2j * np.pi * rng.random((2, 300)))
+    zero = np.zeros_like(h)
+    b = cells.bloch_phase(cells.Matrix(1.0, 2 * h, zero, zero, zero, None))
+    wanted = 2 * np.arcsin(np.sqrt(-h / 2))
+    wanted = np.where(wanted.imag < 0, -wanted, wanted)
+    np.testing.assert_allclose(b.reduced, wanted, rtol=5e-15)
+    assert not b.flip.any()
+
+
+@pytest.mark.parametrize("size", [1e-9, 1e-4, 0.1, 0.29, 0.31, 20.0])
+def test_exponentials_near_one(size):
+    rng = np.random.default_rng(7)
+    z = size * np.sqrt(rng.random(500)) * np.exp(1j * np.pi * (0.5 + rng.random(500)))
+    whole, less = cells._exp_and_expm1(z)
+    np.testing.assert_allclose(whole, np.exp(z), rtol=1e-15 * (1 + size))
+    np.testing.assert_allclose(less, np.expm1(z), rtol=2e-15)
+
+
+@pytest.mark.parametrize("count", [1, 7, 450])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_powers_of_a_cell(seed, count):
+    """The closed form as it stands in the comment."""
+    rng = np.random.default_rng(seed)
+    layers, omega = layer_values(random_cell(rng), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
+    kx = random_kx(rng, 70)
+    m = cells.cell_matrix(layers, omega, kx)
+    b = cells.bloch_phase(m)
+    far = one.State(np.ones_like(kx), 20j + kx, np.zeros(kx.shape))
+    lam, x2n, x2 = np.exp(1j * b.reduced), np.expm1(2j * b.reduced * count), np.expm1(2j * b.reduced)
+    g, f = (lam + 1 + x2n) / (1 + lam), lam * x2n / x2
+    sign = np.where(b.flip, -1, 1)
+    p = g * far.p + f * (sign * (far.p + m.e22 * far.p - m.e12 * far.q) - far.p)
+    q = g * far.q + f * (sign * (far.q + m.e11 * far.q - m.e21 * far.p) - far.q)
+    found = cells.power_back(m, b, far, count)
+    close(found.p, p, rtol=1e-12)
+    close(found.q, q, rtol=1e-12)
+    close(found.log, -1j * b.phase * count)
 
 
 def plain_march(segments, omega, kx, state, depths):
@@ -247,6 +320,20 @@ def test_many_beams_at_once(seed):
     close(spectral.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
 
 
+@pytest.mark.parametrize("seed", SEEDS)
+def test_an_open_line(seed):
+    """chi = erfc(-k/delta)/2 at every node, for one frequency and for several."""
+    from scipy.special import erfc
+
+    rng = np.random.default_rng(seed)
+    sigma, delta, window, band = rng.uniform(0.1, 15, 3), rng.uniform(1, 15, 3), rng.uniform(1, 5, 3), np.full(3, 150.0)
+    plans = [spectral.OpenPlan(*(float(v[i]) for v in (sigma, delta, window, band))) for i in range(3)]
+    for plan in (spectral.OpenPlan(sigma, delta, window, band), *plans):
+        line = spectral.open_line(plan)
+        d, w = (np.asarray(v)[..., None] for v in (plan.delta, plan.window))
+        np.testing.assert_allclose(line.weight, erfc(-line.k / d) / 2 / w, rtol=1e-14)
+
+
 def test_fast_lengths():
     lengths = sorted(2**a * 3**b * 5**c for a in range(13) for b in range(9) for c in range(6))
     for n in (1, 2, 7, 11, 97, 1025, 1331, 2049, 4000):
@@ -268,9 +355,12 @@ def test_fast_lengths():
 
 
 def random_modes(rng):
-    k = np.sort(60 * rng.random((3, 50)), axis=-1) - 1j
+    """Amplitudes on even lines, the same m for three frequencies."""
+    ds, sigma, first = rng.uniform(1, 3, 3), rng.uniform(0, 2, 3), -int(rng.integers(0, 20))
+    n = int(rng.integers(1, 60))
+    k = ds[:, None] * (first + np.arange(n)) - 1j * sigma[:, None]
     right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
-    return sections.Modes(spectral.Line(k, np.ones(k.shape)), right, left)
+    return sections.Modes(spectral.Line(k, np.ones(k.shape), ds, first, sigma), right, left)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -281,8 +371,11 @@ def test_a_profile_and_its_slopes(seed):
     a = modal.right[:, None] * np.exp(1j * k * x[..., None])
     b = modal.left[:, None] * np.exp(-1j * k * x[..., None])
     wanted = ((a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1))
-    for found, want in zip(modal.at(x), wanted, strict=True):
-        close(found, want)
+    for order in range(3):
+        found = modal.at(x, modal.slopes(order))
+        assert len(found) == order + 1
+        for one_found, want in zip(found, wanted, strict=False):
+            close(one_found, want)
     close(modal.value(x), wanted[0])
 
 

@@ -5,6 +5,7 @@ import oracles
 import pytest
 
 import beamprop as bp
+from beamprop import modes
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -101,7 +102,7 @@ def test_field_beside_a_backward_mode(density, thickness):
 
 def test_wrong_side_would_be_seen():
     """The circles are what puts a backward mode right: without them the field is far off."""
-    from beamprop import modes, propagate
+    from beamprop import propagate
     from beamprop.fan import single
     from beamprop.scene import scene
 
@@ -117,6 +118,60 @@ def test_wrong_side_would_be_seen():
         )
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("near", [None, 3.0])
+def test_turns_about_zeros_that_are_known(seed, near):
+    """Rational functions with up to 12 zeros and poles, in boxes of all shapes: zeros less poles inside."""
+    rng = np.random.default_rng(seed)
+    box = modes.Box(-rng.random(), 4 + 40 * rng.random(), -rng.random(), 20 * rng.random() ** 3)
+    zeros, poles = (
+        rng.uniform(box.left - 1, box.right + 1, n) + 1j * rng.uniform(box.low - 1, box.high + 1, n)
+        for n in rng.integers(0, 12, 2)
+    )
+
+    def f(k):
+        value = np.prod(k[..., None] - zeros, axis=-1) / np.prod(k[..., None] - poles, axis=-1)
+        return value, np.zeros(k.shape)
+
+    wanted = sum(box.holds(k, 0.0) for k in zeros) - sum(box.holds(k, 0.0) for k in poles)
+    path = box.outline(48, near)
+    assert modes.winding(f, path, 1e-9) == wanted
+    several = np.stack([path, path + 1.0, path - 100.0])
+    assert modes.windings(lambda k, owner: f(k - np.array([0.0, 1.0, 0.0])[owner][:, None]), several, 1e-9)[
+        :2
+    ].tolist() == [wanted, wanted]
+
+
+@pytest.mark.parametrize("nodes", [1, 5, 24])
+def test_outlines_go_around_once(nodes):
+    """Corners in turn, counter-clockwise, each side from corner to corner; more nodes beside a branch point."""
+    left, right, low, high = np.array([1.0, 2.0]), np.array([9.0, 4.0]), np.array([-1.0, -3.0]), np.array([0.0, 0.5])
+    for near in (None, np.array([3.0, 30.0])):
+        paths = modes.outlines(left, right, low, high, nodes, near)
+        for path, a, b, c, d in zip(paths, left, right, low, high, strict=True):
+            corners = [a + 1j * c, b + 1j * c, b + 1j * d, a + 1j * d]
+            assert [int(np.argmax(path == k)) for k in corners] == sorted(int(np.argmax(path == k)) for k in corners)
+            assert all(np.any(path == k) for k in corners)
+            step = np.diff(np.append(path, path[0]))
+            assert np.all((step.real == 0) | (step.imag == 0))
+            assert np.sum(np.conj(path - corners[0]) * step).imag / 2 == pytest.approx((b - a) * (d - c))
+            assert np.abs(step).sum() == pytest.approx(2 * (b - a + d - c))
+
+
+@pytest.mark.parametrize("loss", [0.0, 1e-3, 1e-2])
+def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
+    """As `between` finds them one by one; of a lossless slab forward ones may be counted too."""
+    from beamprop.scene import scene, scenes
+
+    f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
+    depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
+    found = modes.some_between(scenes(slab, f), depth, band)
+    each = [bool(modes.between(scene(slab, a), b, c).wrong) for a, b, c in zip(f, depth, band, strict=True)]
+    assert np.all(found >= each)
+    assert loss == 0 or found.tolist() == each
+    assert any(each)
 
 
 @pytest.mark.parametrize(
@@ -187,6 +242,54 @@ def test_several_crossings_are_said():
     with pytest.warns(RuntimeWarning, match="half level is met"):
         ds = bp.beam_measures(slab, bp.Profile(x, two), 8000.0)
     assert ds.crossings.sel(side="transmitted") == 4
+
+
+def two_humps():
+    x = np.linspace(-0.3, 0.3, 601)
+    return bp.Profile(x, np.exp(-(((x - 0.12) / 0.03) ** 2)) + np.exp(-(((x + 0.12) / 0.03) ** 2)))
+
+
+@pytest.mark.parametrize("beam", [two_humps(), bp.Slits(0.08, 0.3, z0=-0.02)])  # slits: one frequency at a time
+def test_widths_of_two_humps_say_so(beam):
+    """As often as a field on a fine grid crosses it; all four planes are named."""
+    slab = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01)
+    with pytest.warns(RuntimeWarning, match="half level is met up to") as said:
+        ds = bp.beam_width(slab, beam, [8000.0, 9000.0], rtol=1e-5)
+    (message,) = [str(w.message) for w in said]
+    x = np.linspace(-0.4, 0.4, 4001)
+    planes = {"fwhm_launch": beam.z0, "fwhm_in": 0.0, "fwhm_out": 0.01}
+    met = []
+    for name, z in planes.items():
+        free = bp.Slab.uniform(bp.AIR, 0.01) if name == "fwhm_in" else slab
+        for f in ds.frequency.values:
+            p = beam.profile(x, K0) if z == beam.z0 else bp.field(free, beam, f, x, z, rtol=1e-5).p.values
+            met.append(np.count_nonzero(np.diff(np.abs(p) > np.abs(p).max() / 2)))
+    assert max(met) > 2
+    assert f"up to {max(met)} times" in message
+    assert message.endswith(": fwhm_launch, fwhm_in, fwhm_out, fwhm_air")
+
+
+def test_a_plain_beam_says_nothing():
+    """The paper's lossy slab and one without loss meet the half level twice (a warning is an error here)."""
+    for cell in (bp.lmmd_cell(), bp.lmmd_cell(0.05, 0.0)):
+        bp.beam_width(bp.Slab(cell, 450), bp.GaussianBeam(0.096), [2300.0, 2500.0, 2700.0])
+
+
+def test_crossings_alone_and_together():
+    """Sampled on one window at once, and in a window that grows: the same number."""
+    from beamprop import propagate, sections
+    from beamprop.scene import at_frequency, scenes
+
+    slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
+    s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
+    face = np.full(3, slab.thickness)
+    route = sections.Route(s, sections.far_face(s, 0.0), lambda one: propagate.through(one, 0.0), face, face, True)
+    together = sections.measure(route, beam, 1e-6)
+    for i in range(3):
+        one = at_frequency(s, i)
+        alone = sections._measured_alone(one, beam, propagate.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        assert alone[3] == together.crossings[i] == 4
+        assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
 
 
 # --- measured profiles ------------------------------------------------------------------------------------

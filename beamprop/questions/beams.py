@@ -106,7 +106,12 @@ def beam_width(
         On (frequency, angle): `fwhm_launch`, `fwhm_in` (near face, incident beam alone), `fwhm_out` (far face), `fwhm_air`
         [m]; `peak_out` [Pa] and `centroid_out` [m] at the far face. Widths are of |p|, or of |p|^2 for a beam
         whose `width_of` is "intensity": between the two places nearest to the peak where it is reached. The centroid is
-        taken over the window recorded as attribute. nan, with a warning, where the half level is not met.
+        taken over the window in which the width was looked for.
+
+    Warns
+    -----
+    RuntimeWarning
+        The half level is not met inside the window (nan), or is met more than twice in one of the four planes.
     """
     checks.instance(slab, Slab, "slab")
     checks.instance(beam, Beam, "beam")
@@ -117,6 +122,7 @@ def beam_width(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
+    most = np.zeros(4, int)
     work = [
         (rows, j)
         for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
@@ -124,12 +130,21 @@ def beam_width(
     ]
     for rows, j in progress(work):
         s = scenes(slab, flat[rows])
-        found = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        found, met = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        most = np.maximum(most, met.max(axis=1).astype(int))
         for name, values in found._asdict().items():
             table[name][rows, j] = values
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
+    if np.any(most > 2):
+        many = ", ".join(name for name, times in zip(names, most, strict=False) if times > 2)
+        warnings.warn(
+            f"the half level is met up to {most.max()} times; the widths are between the two places nearest to the peak: "
+            f"{many}",
+            RuntimeWarning,
+            stacklevel=2,
+        )
     dims, pick = checks.dims(frequency=f, angle=angles)
     return datasets.make(
         {n: (dims, v[pick]) for n, v in table.items()},

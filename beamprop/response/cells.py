@@ -7,16 +7,23 @@ with it the Bloch phase, has full relative precision; for an opaque one a = exp(
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..conventions import principal_root
 from ..media import LayerValues
-from ..products import BLOCK, small_product
+from ..products import BLOCK, UNTHREADED, small_product
 from .layers import State, at_frequencies, several_layers
 
 TINY = 1e-300
+#: Entries of matrices are kept below this.
+LARGE = 1e60
+LOG_LARGE = math.log(LARGE)
+#: Up to this size the number of statements is what an array costs.
+FEW = 2**11
 
 
 class Matrix(NamedTuple):
@@ -41,13 +48,13 @@ class BlochPhase(NamedTuple):
 
     @property
     def phase(self) -> np.ndarray:
-        return self.reduced + np.pi * self.flip
+        return self.reduced + np.pi * self.flip if np.any(self.flip) else self.reduced
 
 
 def _renormalised(m: Matrix) -> Matrix:
     """Take size out of a matrix whose entries would overflow in the next products."""
     size = np.abs(m.e11) + np.abs(m.e12) + np.abs(m.e21) + np.abs(m.e22)
-    large = size > 1e60
+    large = size > LARGE
     if not np.any(large):
         return m
     size = np.where(large, size, 1.0)
@@ -102,6 +109,15 @@ def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> M
     """Matrix of one period, all layers at once and then pair by pair: (F, n)."""
     # plain: m = layer_N ... layer_2 layer_1, each [[C, A s], [-B s, C]]
     A, B, f = several_layers(layers, slice(None), omega * omega, kx2)
+    if f.growth is None and f.c.size <= FEW:
+        e = np.empty((2, 2, *f.c.shape), complex)
+        e[0, 0] = e[1, 1] = f.c
+        np.multiply(A, f.s, out=e[0, 1])
+        np.multiply(B, f.s, out=e[1, 0])
+        np.negative(e[1, 0], out=e[1, 0])
+        largest = 1 + 2 * float(np.max(np.abs(e), initial=0.0))
+        if len(f.c) * math.log(largest) < LOG_LARGE:
+            return _calm_product(e)
     m = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
     while (count := m.e11.shape[0]) > 1:
         even = count - count % 2
@@ -110,12 +126,29 @@ def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> M
     return _each(m, lambda v: v[0])
 
 
+def _calm_product(e: np.ndarray) -> Matrix:
+    """Product of I + E (2, 2, J, F, n) over the layers J, the first one nearest, where no product grows large."""
+    # plain: as `times`, for all four entries of all pairs in one statement
+    while (count := e.shape[2]) > 1:
+        even = count - count % 2
+        near, far = e[:, :, 0:even:2], e[:, :, 1:even:2]
+        pairs = far[:, :1] * near[:1]
+        pairs += far[:, 1:] * near[1:]
+        pairs += near
+        pairs += far
+        e = np.concatenate([pairs, e[:, :, even:]], axis=2) if count % 2 else pairs
+    (e11, e12), (e21, e22) = e[:, :, 0]
+    return Matrix(1.0, e11, e12, e21, e22, None)
+
+
 def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matrix:
     """Matrix of one period, near to far face: a polynomial in kx^2 where that is as exact, else layer by layer."""
-    kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex)
-    if kx2.shape[1] >= 4 * CIRCLE and (fitted := _fitted(layers, omega, kx2)) is not None:
+    kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex, copy=False)
+    count = len(layers.thickness)
+    many = kx2.shape[1] >= 2 * CIRCLE and kx2.size * count > FEW
+    if many and (fitted := _fitted(layers, omega, kx2)) is not None:
         return fitted
-    block = max(1, BLOCK // len(layers.thickness))
+    block = max(1, BLOCK // count)
     if kx2.size <= block:
         return _layer_product(layers, omega, kx2)
     out = np.empty((4, *kx2.shape), complex)
@@ -162,7 +195,7 @@ def _fitted(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix |
     rows = max(1, BLOCK // (kx2.shape[1] * (degree + 1)))
     for start in range(0, kx2.shape[0], rows):
         part = slice(start, start + rows)
-        _polynomials(coefficients[part, :, : degree + 1], kx2[part] / radius[part], out[:, part])
+        _polynomials(coefficients[part, :, : degree + 1], kx2[part] * (1 / radius[part]), out[:, part])
     e11, e12, e21, e22 = out
     return Matrix(1.0, e11, e12, e21, e22, None)
 
@@ -179,6 +212,9 @@ def _polynomials(coefficients: np.ndarray, v: np.ndarray, out: np.ndarray) -> No
     powers = np.ones((v.shape[0], coefficients.shape[-1], v.shape[1]), complex)
     for k in range(1, powers.shape[1]):
         np.multiply(powers[:, k - 1], v, out=powers[:, k])
+    if coefficients[0].size * v.shape[1] <= UNTHREADED:
+        np.matmul(coefficients, powers, out=out.transpose(1, 0, 2))
+        return
     for i in range(v.shape[0]):
         out[:, i] = small_product(coefficients[i], powers[i])
 
@@ -196,7 +232,10 @@ def bloch_phase(m: Matrix) -> BlochPhase:
     ``sin(phase/2)^2 = -(trace/2 - 1)/2`` keeps full precision for thin cells; a scaled (opaque) cell has
     ``exp(-i phase) = x + sqrt(x^2 - 1)``, the larger root, with x = trace/2 taken with its growth.
     """
-    h = (m.e11 + m.e22) / 2
+    h = m.e11 + m.e22
+    h *= 0.5
+    if m.growth is None and (size := float(np.max(np.abs(h), initial=0.0))) < SMALL:
+        return BlochPhase(_small_phase(h, size), np.zeros(h.shape, bool))
     thick = np.zeros(h.shape, bool) if m.growth is None else np.broadcast_to(m.growth > 0, h.shape)
     calm = np.where(thick, 0.0, h) if m.growth is not None else h
     flip = ~thick & (calm.real < -1)
@@ -209,6 +248,59 @@ def bloch_phase(m: Matrix) -> BlochPhase:
         logarithm = m.growth + np.log(np.where(thick & (larger != 0), larger, 1.0))
         reduced = np.where(thick, 1j * logarithm, reduced)
     return BlochPhase(reduced, flip)
+
+
+#: Below this size of trace/2 - 1, and of the phase, power series stand for the functions: a dozen terms at most.
+SMALL = 0.1
+
+
+def _small_phase(h: np.ndarray, size: float) -> np.ndarray:
+    """The Bloch phase where |h| = |trace/2 - 1| <= size < SMALL."""
+    # plain: 2 arcsin(sqrt(y)), y = -h/2, turned to Im >= 0; arcsin(v)/v = sum_k (2k)!/(4^k (k!)^2 (2k + 1)) v^2k
+    y = h * -0.5
+    coefficients = [1.0]
+    odd = 1.0
+    while coefficients[-1] * (size / 2) ** (len(coefficients) - 1) > 1e-17:
+        k = len(coefficients)
+        odd *= (2 * k - 1) / (2 * k)
+        coefficients.append(odd / (2 * k + 1))
+    phase = _horner(coefficients, y)
+    phase *= 2 * principal_root(y)
+    np.negative(phase, out=phase, where=phase.imag < 0)
+    return phase
+
+
+def _horner(coefficients: list[float], v: np.ndarray) -> np.ndarray:
+    """sum_k coefficients_k v^k, from the last one on."""
+    out = v * coefficients[-1]
+    for c in coefficients[-2:0:-1]:
+        out += c
+        out *= v
+    out += coefficients[0]
+    return out
+
+
+def _expm1(z: np.ndarray) -> np.ndarray:
+    """exp(z) - 1, where |z| >= 1 as it stands here: the rounding of z is no less than what is lost."""
+    out = np.exp(z)
+    out -= 1
+    near = np.abs(z) < 1
+    if np.any(near):
+        out[near] = np.expm1(z[near])
+    return out
+
+
+def _exp_and_expm1(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(z) and exp(z) - 1, each with full relative precision: by a power series where |z| is small."""
+    size = float(np.max(np.abs(z), initial=0.0))
+    if size >= 3 * SMALL:
+        return np.exp(z), np.expm1(z)
+    coefficients = [1.0]
+    while coefficients[-1] * size ** (len(coefficients) - 1) > 1e-17:
+        coefficients.append(coefficients[-1] / (len(coefficients) + 1))
+    less = _horner(coefficients, z)
+    less *= z
+    return less + 1, less
 
 
 def faded(exponent: np.ndarray) -> np.ndarray:
@@ -224,15 +316,23 @@ def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) ->
     ``g = (Lambda + Lambda^2n)/(1 + Lambda)``, ``f = Lambda (1 - Lambda^2n)/(1 - Lambda^2)`` (n at the band edge): the
     Chebyshev form with its growth taken out and its cancellations done by hand.
     """
-    lam = np.exp(1j * b.reduced)
-    x2n = np.expm1(faded(2j * b.reduced * count))
-    x2 = np.expm1(2j * b.reduced)
-    edge = np.abs(x2) < TINY
-    ratio = np.where(edge, count, x2n / np.where(edge, 1.0, x2))
-    g = (lam + 1 + x2n) / (1 + lam)
-    f = ratio * (lam if m.growth is None else np.exp(1j * b.reduced + m.growth))
+    # plain: x2n = expm1(2i reduced n), g = (lam + 1 + x2n)/(1 + lam), f = lam x2n/expm1(2i reduced), lam = exp(i reduced)
+    z = 1j * b.reduced
+    lam, x = _exp_and_expm1(z)
+    x2n = _expm1(faded(z * (2 * count)))
+    share = x2n / (1 + lam)
+    edge = np.abs(x) < TINY
+    ratio = np.where(edge, count, share / np.where(edge, 1.0, x)) if np.any(edge) else share / x
+    f = ratio * (lam if m.growth is None else np.exp(z + m.growth))
     # f stands for f exp(growth) here, to meet E, which is kept divided by exp(growth)
-    sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
-    p = g * far.p + f * (sign * (m.e22 * far.p - m.e12 * far.q) - twice * far.p)
-    q = g * far.q + f * (sign * (m.e11 * far.q - m.e21 * far.p) - twice * far.q)
+    p, q = m.e22 * far.p, m.e11 * far.q
+    p -= m.e12 * far.q
+    q -= m.e21 * far.p
+    if np.any(b.flip):
+        sign, twice = np.where(b.flip, -1.0, 1.0), np.where(b.flip, 2.0, 0.0)
+        p, q = sign * p - twice * far.p, sign * q - twice * far.q
+    g = 1 + share
+    p, q = f * p, f * q
+    p += g * far.p
+    q += g * far.q
     return State(p, q, far.log - 1j * b.phase * count)

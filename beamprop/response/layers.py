@@ -106,8 +106,11 @@ def layer_back(state: State, A: np.ndarray, B: np.ndarray, f: Entire) -> State:
 def normalised(state: State) -> State:
     """Take the state's size out into its logarithm."""
     size = np.abs(state.p) + np.abs(state.q)
-    size = np.where((size > 0) & np.isfinite(size), size, 1.0)
-    return State(state.p / size, state.q / size, state.log + np.log(size))
+    usual = (size > 0) & np.isfinite(size)
+    if not usual.all():
+        size = np.where(usual, size, 1.0)
+    scale = 1 / size
+    return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
 
 def at_frequencies(layers: LayerValues, rows: slice) -> LayerValues:

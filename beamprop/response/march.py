@@ -31,14 +31,14 @@ def march(
 ) -> tuple[State, list[Station]]:
     """Carry the outgoing state back through all segments."""
     starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
-    owner = segment_of(starts[:-1], z)
+    owner = segment_of(starts[:-1], z) if z.size else z
     stations = []
     for index in reversed(range(len(segments))):
         segment, start = segments[index], float(starts[index])
         far, m, b = state, None, None
         faces: dict[int, State] = {}
         if segment.periods == 1:
-            wanted = set(places_of(segment, z[owner == index] - start).layer.tolist())
+            wanted = set(places_of(segment, z[owner == index] - start).layer.tolist()) if z.size else set()
             state, faces = _through_layers(segment.layers, omega, kx, state, wanted)
         else:
             m = cell_matrix(segment.layers, omega, kx)

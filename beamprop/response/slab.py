@@ -31,7 +31,7 @@ def _near(
 ) -> tuple[np.ndarray, State, list[Station]]:
     """kz in front, and the state at the near face that leaves a unit outgoing wave behind."""
     kz1 = outgoing_kz(kx, omega, *front)
-    kz2 = outgoing_kz(kx, omega, *behind)
+    kz2 = kz1 if _alike(front, behind) else outgoing_kz(kx, omega, *behind)
     exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
     near, stations = march(segments, omega, kx, exit_state, z)
     return kz1, near, stations
@@ -71,12 +71,13 @@ def solve(
     -------
     Response
     """
-    kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex)
+    kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex, copy=False)
     front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
     z = np.empty(0) if z is None else np.asarray(z, float)
     kz1, near, stations = _near(segments, front, behind, omega, kx, z)
-    forward, backward = 1j * kz1 * near.p + front.rho_z * near.q, 1j * kz1 * near.p - front.rho_z * near.q
-    size = 2j * kz1
+    ikz = 1j * kz1
+    by_p, by_q = ikz * near.p, front.rho_z * near.q
+    forward, backward, size = by_p + by_q, by_p - by_q, 2 * ikz
     grazing = kz1 == 0
     if np.any(grazing):
         forward, backward, size = _grazing(near, grazing, forward, backward, size, front, behind, segments, omega)
@@ -84,12 +85,17 @@ def solve(
         per_incident = size / forward
         t = per_incident * np.exp(-near.log)
         r = backward / forward
-        opaque = _has_vanishing_layer(segments) & (kx != 0)
-        t = np.where(opaque, 0.0, t)
+        if np.any(vanishing := _has_vanishing_layer(segments)):
+            t = np.where(vanishing & (kx != 0), 0.0, t)
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
         if z.size:
             inside = fill_inside(stations, omega, kx, z, near.log, per_incident)
     return Response(r, t, inside)
+
+
+def _alike(front: FluidValues, behind: FluidValues) -> bool:
+    """Whether both half-spaces are the same at all frequencies."""
+    return all(bool((a == b).all()) for a, b in zip(front, behind, strict=True))
 
 
 def _has_vanishing_layer(segments: list[SegmentValues]) -> np.ndarray:
