@@ -230,11 +230,11 @@ def test_periods_by_tables_against_the_closed_form(seed, lossless):
     b = cells.bloch_phase(m)
     far = one.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
     counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 4), 200))
-    (first, second), (outer, x) = inside._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
+    two, factors = inside._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
     plain = cells.power_back(m, b, far, counts[:, None])
     scale = np.exp(plain.log)
-    close(outer * first.p[0] + x * second.p[0], plain.p * scale, rtol=3e-13, axis=0)
-    close(outer * first.q[0] + x * second.q[0], plain.q * scale, rtol=3e-13, axis=0)
+    close((factors * two.p).sum(axis=1), plain.p * scale, rtol=3e-13, axis=0)
+    close((factors * two.q).sum(axis=1), plain.q * scale, rtol=3e-13, axis=0)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -242,11 +242,14 @@ def test_the_rest_of_a_layer_as_powers_of_the_share(seed):
     rng = np.random.default_rng(seed)
     layers, omega = layer_values(random_cell(rng), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
     kx, share = random_kx(rng, 40), rng.random(30)
-    faces = [one.State(rng.random((1, 40)) + 0j, rng.random((1, 40)) * 1j, np.zeros(1)) for _ in range(2)]
-    found = inside._rest_of_layer(layers, 0, omega, kx, faces)(share)
-    for p, face in zip(found, faces, strict=True):
-        wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
-        close(p, np.array(wanted).astype(complex))
+    faces = one.State(rng.random((2, 40)) + 0j, rng.random((2, 40)) * 1j, np.zeros(1))
+    A, B, _ = one.one_layer(layers, 0, omega * omega, kx * kx)
+    for many in (1, 30):
+        found = inside._rest_of_layer(A, B, faces, many)(share)
+        for i in range(2):
+            face = one.State(faces.p[i : i + 1], faces.q[i : i + 1], faces.log)
+            wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
+            close(found[:, i], np.array(wanted).astype(complex))
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from ..media import LayerValues, SegmentValues
-from ..products import small_product
+from ..products import BLOCK, small_product
 from .cells import TINY, BlochPhase, Matrix, faded, matrix_back, power_back, times
-from .layers import State, at_frequencies, layer_back, one_layer, terms_for
+from .layers import State, at_frequencies, entire, layer_back, one_layer, several_layers, terms_for
 from .march import Places, Station, places_of, segment_of
 
 
@@ -102,17 +102,13 @@ def _fill_periodic(
         return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
     behind, which = _counts(periods - 1 - places.period)
     states, factors = _in_two_terms(m, b, far, behind, near_log, per_incident)
-    gathered = np.empty((ROWS, kx.shape[1]), complex)
-    for j, here, tail in _with_tails(layers, omega, kx, places):
-        both = [state if tail is None else matrix_back(tail, state) for state in states]
-        pressures = _rest_of_layer(layers, j, omega, kx, both)
+    gathered = np.empty((ROWS, 2, kx.shape[1]), complex)
+    for here, pressures in _back_through(layers, omega, kx, places, states):
         for start in range(0, here.size, ROWS):  # blocks that stay in the cache
             block = here[start : start + ROWS]
-            one, two = pressures(places.share[block])
-            for pressure, factor in zip((one, two), factors, strict=True):
-                pressure *= np.take(factor, which[block], axis=0, out=gathered[: block.size], mode="clip")
-            one += two
-            out[rows[block]] = one
+            p = pressures(places.share[block])  # (Z, 2, n)
+            p *= np.take(factors, which[block], axis=0, out=gathered[: block.size], mode="clip")
+            out[rows[block]] = np.add(p[:, 0], p[:, 1], out=p[:, 0])
 
 
 #: Depths that are worked on at a time.
@@ -121,8 +117,8 @@ ROWS = 32
 
 def _in_two_terms(
     m: Matrix, b: BlochPhase, far: State, behind: np.ndarray, near_log: np.ndarray, scale: np.ndarray
-) -> tuple[tuple[State, State], tuple[np.ndarray, np.ndarray]]:
-    """`power_back` for sorted counts of periods as a sum of two states times factors (len(behind), n).
+) -> tuple[State, np.ndarray]:
+    """`power_back` for sorted counts of periods as a sum of two states (2, n) times factors (len(behind), 2, n).
 
     ``Lambda^n M^-n far = g far + f (M^-1 - I) far`` with x = Lambda^2n - 1 in g = 1 + x/(1 + Lambda) and f = Lambda
     x/(Lambda^2 - 1): factor 1 goes with `far`, factor x (n at the band edge) with far/(1 + Lambda) + Lambda/(Lambda^2 - 1)
@@ -134,13 +130,14 @@ def _in_two_terms(
     edge = np.abs(x2) < TINY
     moved = _moved(m, b, far)
     own, other = np.where(edge, 0.0, 1 / (1 + lam)), lam / np.where(edge, 1.0, x2)
-    second = State(own * far.p + other * moved.p, own * far.q + other * moved.q, far.log)
-    outer = _exp_table(far.log[0] - near_log, -1j * phase, behind, scale)
+    p, q = (np.concatenate([one, own * one + other * two]) for one, two in zip(far[:2], moved[:2], strict=True))
+    factors = np.empty((behind.size, 2, reduced.size), complex)
+    factors[:, 0] = _exp_table(far.log[0] - near_log, -1j * phase, behind, scale)
     x = _expm1_table(2j * reduced, behind)
     if np.any(edge):
         x = np.where(edge, behind[:, None], x)
-    x *= outer
-    return (far, second), (outer, x)
+    np.multiply(x, factors[:, 0], out=factors[:, 1])
+    return State(p, q, far.log), factors
 
 
 def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
@@ -198,6 +195,60 @@ def _faint(exponent: np.ndarray) -> np.ndarray:
     return exponent
 
 
+#: Pressures (Z, 2, n) in a layer, of two states, at shares (Z,) of its thickness in front of its far face.
+Pressures = Callable[[np.ndarray], np.ndarray]
+
+
+def _back_through(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places, states: State
+) -> Iterator[tuple[np.ndarray, Pressures]]:
+    """Carry states (2, n) back through a cell in which nothing grows: for each layer that holds depths, which, and how."""
+    omega2, kx2 = omega * omega, kx * kx
+    holding = dict(_by_layer(places))
+    p, q, _ = states
+    first, size = min(holding), max(1, 4 * BLOCK // kx.size)
+    for stop in range(len(layers.thickness), first, -size):
+        start = max(first, stop - size)
+        A, B, f = several_layers(layers, slice(start, stop), omega2, kx2)
+        As, Bs = A * f.s, B * f.s
+        for i in reversed(range(stop - start)):
+            if start + i in holding:
+                here = holding[start + i]
+                yield here, _rest_of_layer(A[i], B[i], State(p, q, states.log), here.size)
+            p, q = p + (f.c[i] * p - As[i] * q), q + (f.c[i] * q + Bs[i] * p)
+
+
+#: From how many depths in a layer on a series in the share is cheaper than the functions themselves.
+MANY = 8
+
+
+def _rest_of_layer(A: np.ndarray, B: np.ndarray, face: State, depths: int) -> Pressures:
+    """Pressures in a layer of given A (1, 1) and B (1, n) in front of states (2, n) at its far face."""
+    u = A * B
+    size = float(np.max(np.abs(u)))
+    if size >= 0.5 or depths < MANY:
+
+        def exactly(share: np.ndarray) -> np.ndarray:
+            part = share[:, None, None]
+            f = entire(u * part**2)  # (Z, 1, n)
+            return face.p + (f.c * face.p - A * part * f.s * face.q)
+
+        return exactly
+    # cos and sin as powers of share: p = p_far (1 - u s^2/2! + ...) - A q_far (s - u s^3/3! + ...)
+    count = 2 * terms_for(size) + 2
+    coefficients = np.empty((count, *face.p.shape), complex)
+    coefficients[0], coefficients[1] = face.p, -A * face.q
+    for i in range(2, count):
+        np.multiply(coefficients[i - 2], u * (-1 / (i * (i - 1))), out=coefficients[i])
+    flat = coefficients.reshape(count, -1).view(float)
+
+    def by_powers(share: np.ndarray) -> np.ndarray:
+        powers = np.vander(share, count, increasing=True)
+        return small_product(powers, flat).view(complex).reshape(share.size, *face.p.shape)
+
+    return by_powers
+
+
 def _with_tails(
     layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places
 ) -> Iterator[tuple[int, np.ndarray, Matrix | None]]:
@@ -212,36 +263,6 @@ def _with_tails(
             A, B, f = one_layer(layers, j, omega2, kx2)
             layer = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
             tail = layer if tail is None else times(layer, tail)
-
-
-def _rest_of_layer(
-    layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, faces: list[State]
-) -> Callable[[np.ndarray], list[np.ndarray]]:
-    """Pressures in layer j in front of given states at its far face: a function of the share (Z,) of its thickness."""
-    omega2, kx2 = omega * omega, kx * kx
-    A, B, whole = one_layer(layers, j, omega2, kx2)
-    u = A * B
-    size = float(np.max(np.abs(u)))
-    if size >= 0.5 or whole.growth is not None:
-
-        def exactly(share: np.ndarray) -> list[np.ndarray]:
-            A, B, f = one_layer(layers, j, omega2, kx2, share[:, None])
-            return [layer_back(face, A, B, f).p * np.ones((share.size, 1)) for face in faces]
-
-        return exactly
-    # cos and sin as powers of share: p = p_far (1 - u s^2/2! + ...) - A q_far (s - u s^3/3! + ...)
-    terms = terms_for(size) + 1
-    coefficients = [np.empty((2 * terms, kx.shape[1]), complex) for _ in faces]
-    for face, c in zip(faces, coefficients, strict=True):
-        c[0], c[1] = face.p, -A * face.q
-        for i in range(2, 2 * terms):
-            np.multiply(c[i - 2], u[0] / -(i * (i - 1)), out=c[i])
-
-    def by_powers(share: np.ndarray) -> list[np.ndarray]:
-        powers = np.vander(share, 2 * terms, increasing=True)
-        return [small_product(powers, c.view(float)).view(complex) for c in coefficients]
-
-    return by_powers
 
 
 def _fill_opaque(
