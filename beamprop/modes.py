@@ -380,18 +380,22 @@ def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
     return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
 
 
-def with_circles(line: Line, found: Between, reach: float) -> Line:
+def with_circles(s: Scene, line: Line, found: Between, across: float, along: float, second: bool = False) -> Line:
     """Add to a path small clockwise circles around the modes that lie above it and should lie below.
 
-    Trapezoid rule, 32 nodes, on a circle in the disc that holds nothing else.
+    Trapezoid rule on a circle in the disc that holds nothing else, so small that neither e^{ikx} (over the distance `across`)
+    nor e^{i kz z} (over `along`) turns or grows much on it: aliasing falls with the number of nodes as 1/n!. The `second`
+    of two paths that are compared takes other circles.
     """
+    count, share = (36, 0.8) if second else (32, 1.0)
     nodes, weights = [], []
-    turn = np.exp(-2j * np.pi * (np.arange(32) + 0.5) / 32)
+    turn = np.exp(-2j * np.pi * (np.arange(count) + 0.5) / count)
     for k, free in zip(found.wrong, found.radii, strict=True):
         if k.imag > np.interp(k.real, line.k.real, line.k.imag):
-            radius = min(free, 1.0 / reach)
+            slope = max(abs(k / np.sqrt(b * b - k * k + 0j)) for b in s.branches)  # |dkz/dkx|
+            radius = share * min(free, 1.0 / (across + along * slope))
             nodes.append(k + radius * turn)
-            weights.append(radius * turn * (-2j * np.pi / 32) / (2 * np.pi))
+            weights.append(radius * turn * (-2j * np.pi / count) / (2 * np.pi))
     if not nodes:
         return line
     # in front, so that the path's end stays the last node

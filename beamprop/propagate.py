@@ -118,9 +118,16 @@ class _Search:
             self.found = modes.between(self.scene, 1.05 * self.plan.depth, self.searched)
         return self.found
 
-    def line(self, plan: BentPlan) -> Line:
-        """A path, with circles around what it leaves on its wrong side."""
-        return modes.with_circles(spectral.bent_line(plan), self.found, max(self.reach.extent, self.reach.source))
+    def lines(self) -> tuple[Line, Line]:
+        """The path of the present plan and a second one to judge it by, circles around what they leave on the wrong side."""
+        reach = self.reach
+        one, two = (
+            modes.with_circles(
+                self.scene, spectral.bent_line(p), self.found, max(reach.extent, reach.source), reach.path, bool(i)
+            )
+            for i, p in enumerate((self.plan, self.plan.other()))
+        )
+        return one, two
 
     def shallower(self, depth: float) -> None:
         """Plan again, nearer to the axis: there are fewer modes between them."""
@@ -146,7 +153,7 @@ def _bent_solution(search: _Search) -> Solution:
             shrinks -= 1
             search.shallower(plan.depth / 3)
             continue
-        line, second = search.line(plan), search.line(plan.other())
+        line, second = search.lines()
         one, two = judge.sampled(checks, line, False), judge.sampled(checks, second, True)
         error, edge = judge.difference(s, checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
@@ -192,7 +199,7 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
         if not _fft_is_cheaper(n, size, x.size) or search.look().wrong:
             return None
         if second is None:
-            second = judge.sampled(checks, search.line(plan.other()), True)
+            second = judge.sampled(checks, search.lines()[1], True)
         line = spectral.open_line(straight._replace(window=n * dx))
         error, _ = judge.difference(s, checks, judge.sampled(checks, line, False), second)
         if error.max() <= rtol:

@@ -5,7 +5,7 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop import modes
+from beamprop import modes, scene
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -98,6 +98,40 @@ def test_field_beside_a_backward_mode(density, thickness):
     )
     got = bp.field(lossy, beam, F, x, z).p.values
     assert np.abs(got - want).max() < 2e-8 * largest
+
+
+def test_field_far_from_a_slab_with_backward_modes():
+    """A backward mode below k0: its circle is small enough for waves that travel a hundred times its radius along z."""
+    frequency, cell = (
+        1117.0,
+        bp.Cell(
+            tuple(
+                bp.Layer(bp.Fluid(rho + 5e-4j, BULK), 1.1675e-3)
+                for rho in (18.3, 12.9, -0.06, -13.04, -18.42, -13.04, -0.06, 12.9)
+            )
+        ),
+    )
+    slab, beam = bp.Slab(cell, 12), bp.GaussianBeam(0.11, x0=0.18, z0=-4.0)
+    a, k0 = 0.11 / (2 * np.sqrt(np.log(2))), 2 * np.pi * frequency / 343
+    found = modes.between(scene.scene(slab, frequency), 0.1 * k0, 3 * k0)
+    assert any(abs(k) < 0.9 * k0 for k in found.wrong)
+    x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
+    want = oracles.open_field(
+        [(layer.fluid.density, layer.fluid.bulk_modulus, layer.thickness) for layer in cell.layers],
+        12,
+        (1.25, BULK),
+        (1.25, BULK),
+        frequency,
+        lambda k: a * np.sqrt(np.pi) * np.exp(-((a * k / 2) ** 2) - 0.18j * k),
+        -4.0,
+        x,
+        z,
+        bend=0.05,
+        band=160,
+        count=60001,
+    )
+    got = bp.field(slab, beam, frequency, x, z).p.values
+    assert np.all(np.abs(got - want).max(axis=1) < 2e-8 * np.abs(want).max(axis=1))
 
 
 def test_wrong_side_would_be_seen():
