@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from .spectral import Line
 LOSS = 1e-8
 #: A box of the search begins this far (relative) to the right of the last branch point.
 BESIDE = 1e-8
+
+#: A mode nearer to the real axis than this, over k0, may be on either side by rounding: a layer without loss beside others with.
+ON_AXIS = 1e-10
 
 #: A path leaves at most so many modes on its wrong side, and the search for them takes at most so many values of D.
 MOST_WRONG = 24
@@ -169,11 +172,18 @@ BESIDE_BRANCH = np.array([-0.2, -0.06, -0.02, 0.0, 0.02, 0.06, 0.2])
 
 
 def outlines(
-    left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, nodes: int, near: np.ndarray | None = None
+    left: np.ndarray,
+    right: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    nodes: int,
+    near: np.ndarray | None = None,
+    lifted: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> np.ndarray:
     """Outlines of boxes (P,), counter-clockwise, (P, n): `nodes` on the longer sides, a quarter on sides half as long or less.
 
-    With `near` (P,) there are more nodes on the horizontal sides beside that Re kx: a branch point.
+    With `near` (P,) there are more nodes on the horizontal sides beside that Re kx: a branch point. `lifted` raises the upper
+    side, to the right of Re kx = lifted[0], by lifted[1].
     """
     width, height = right - left, high - low
     across, up = (
@@ -190,6 +200,9 @@ def outlines(
     out.real[:, :n], out.imag[:, :n] = x, low
     out.real[:, n : n + up], out.imag[:, n : n + up] = right, low + y
     out.real[:, n + up], out.real[:, n + up + 1 : -up], out.imag[:, n + up : -up] = right[:, 0], x[:, :0:-1], high
+    if lifted is not None:
+        top = out[:, n + up : -up]
+        top.imag += np.where(top.real > lifted[0][:, None], lifted[1][:, None], 0.0)
     out.real[:, -up:], out.imag[:, -up:] = left, high - y
     return out
 
@@ -298,6 +311,8 @@ class Between(NamedTuple):
 
 
 NONE = Between((), ())
+#: Steps along an outline, over its largest Re kx, that are not halved further: a zero lies on it.
+FINEST = 1e-12
 #: More modes than can be told apart.
 UNCLEAR = Between((complex("nan"),), (0.0,))
 
@@ -306,24 +321,33 @@ def between(s: Scene, depth: float, band: float) -> Between:
     """Modes below the real axis (or on it, but backward) and above a path at `depth` below it, 0 < Re kx < band."""
     if not may_guide_backward(s):
         return NONE
-    start, edge = 1e-3 * s.k0, max(s.branches) * (1 + BESIDE)
+    start, edge, above = 1e-3 * s.k0, max(s.branches) * (1 + BESIDE), ON_AXIS * s.k0
     try:
-        if not is_lossless(s):
-            found = _few_modes(s, Box(start, band, -depth, 0.0))
-        else:
-            found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
-            if band > edge:
-                found += _few_modes(s, Box(edge, band, -depth, depth))
+        if is_lossless(s):
+            above = depth
+        elif not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
+            return NONE
+        found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
+        if band > edge:
+            found += _few_modes(s, Box(edge, band, -depth, above))
         wrong = [m.kx for m in found if m.direction < 0]
         return Between(tuple(wrong), tuple(_free_disc(s, k, [m.kx for m in found]) for k in wrong))
     except TooManyModes:
         return UNCLEAR
 
 
+def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
+    """Whether there is a mode in a box, its upper side raised by `above` to the right of `edge`: one search, mostly in vain."""
+    values = (np.array([v]) for v in (*box, min(s.branches), edge, above))
+    left, right, low, high, near, beyond, lift = values
+    path = outlines(left, right, low, high, 24, near, (beyond, lift))[0]
+    return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
+
+
 def _few_modes(s: Scene, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
     f = dispersion_of(s)
-    total = winding(f, box.outline(24, min(s.branches)), 1e-9 * box.right, MOST_VALUES)
+    total = winding(f, box.outline(24, min(s.branches)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
     found: list[complex] = []
@@ -364,18 +388,18 @@ def some_between(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
         part = s if owner.size == depth.size and np.array_equal(owner, everyone) else at_frequency(s, owner)
         return dispersion(part.segments, part.before, part.after, part.omega, kx)
 
-    def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, lifted: Any = None) -> np.ndarray:
         try:
-            paths = outlines(left, right, low, high, 12, near)
-            return windings(evaluate, paths, 1e-9 * float(np.min(s.k0)), MOST_VALUES * depth.size)
+            paths = outlines(left, right, low, high, 12, near, lifted)
+            return windings(evaluate, paths, FINEST * float(np.min(s.k0)), MOST_VALUES * depth.size)
         except TooManyModes:
             return np.ones(depth.shape, int)
 
     everyone, near = np.arange(depth.size), np.min(np.stack(s.branches), axis=0)
     zero, start = np.zeros(depth.shape), 1e-3 * s.k0
-    if not is_lossless(s):
-        return count(start, band, -depth, zero) > 0
     edge = np.max(np.stack(s.branches), axis=0) * (1 + BESIDE)
+    if not is_lossless(s):
+        return count(start, band, -depth, zero, (edge, ON_AXIS * s.k0)) > 0
     below = count(start, np.minimum(edge, band), -depth, zero) > 0
     return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
 

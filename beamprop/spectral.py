@@ -168,21 +168,32 @@ def propagating_line(k0: float, breaks: list[float], count: int) -> Line:
     """About `count` Gauss nodes over |kx| < k0, for sources of propagating waves only.
 
     The substitution kx = k0 sin(alpha) takes out the square roots at k0; `breaks` are other branch points inside, where
-    intervals meet. alpha goes as u^2 at both ends of every interval, which takes out a root there too; u is divided into
-    panels of 24 nodes.
+    intervals meet and alpha goes as u^2, which takes out a root there too; u is divided into panels of 24 nodes. Weights are
+    k0 cos(alpha) of the rounded kx, for spectra with 1/kz in them.
     """
     edges = np.arcsin(np.unique(np.clip([0.0, *(b / k0 for b in breaks if 0 < b < k0), 1.0], 0, 1)))
     g, v = np.polynomial.legendre.leggauss(24)
     panels = max(2, math.ceil(count / 24))
     u = ((np.arange(panels)[:, None] + (g + 1) / 2) / panels).ravel()
     w = np.tile(v / 2 / panels, panels)
-    smooth, slope = u * u * (3 - 2 * u), 6 * u * (1 - u)
     nodes, weights = [], []
     for lo, hi in itertools.pairwise(edges):
-        alpha = lo + (hi - lo) * smooth
-        nodes.append(k0 * np.sin(alpha))
-        weights.append(k0 * np.cos(alpha) * (hi - lo) * slope * w / (2 * np.pi))
+        smooth, slope = _slow_ends(u, lo > 0, hi < edges[-1])
+        k = k0 * np.sin(lo + (hi - lo) * smooth)
+        nodes.append(k)
+        weights.append(np.sqrt((k0 - k) * (k0 + k)) * (hi - lo) * slope * w / (2 * np.pi))
     return Line(np.concatenate(nodes).astype(complex), np.concatenate(weights))
+
+
+def _slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
+    """A map of (0, 1) to itself, and its slope, that goes as u^2 at the chosen ends."""
+    if at_0 and at_1:
+        return u * u * (3 - 2 * u), 6 * u * (1 - u)
+    if at_0:
+        return u * u, 2 * u
+    if at_1:
+        return u * (2 - u), 2 * (1 - u)
+    return u, np.ones_like(u)
 
 
 # --- sums over a line -------------------------------------------------------------------------------------

@@ -480,6 +480,11 @@ def is_lossless(m: Medium) -> bool:
     return all(np.imag(v) == 0 for layers, _ in m.segments for layer in layers for v in layer[:3] if np.isfinite(v))
 
 
+def is_lossy(m: Medium) -> bool:
+    """Every layer has loss: no mode lies on the axis, where rounding would choose its side."""
+    return all(any(np.imag(v) != 0 for v in layer[:3]) for layers, _ in m.segments for layer in layers)
+
+
 def has_negative(m: Medium) -> bool:
     """Some layer has a negative density or modulus."""
     return any(np.real(v) < 0 for layers, _ in m.segments for layer in layers for v in layer[:3])
@@ -490,11 +495,12 @@ def wrong_side(
 ) -> list[complex] | None:
     """Backward modes above the path: their kx; None where they cannot be told.
 
-    Counted with a trace of loss where there is none, the less the thicker the slab. Where there are any, they are followed from a scan.
+    Counted with a trace of loss where some layer has none, the less the thicker the slab. Where there are any, they are followed
+    from a scan.
     """
     if not has_negative(m):
         return []
-    test = m if not is_lossless(m) else Medium(slab, frequency, 1e-5 / max(1.0, 0.1 * m.k0 * m.thickness))
+    test = m if is_lossy(m) else Medium(slab, frequency, 1e-5 / max(1.0, 0.1 * m.k0 * m.thickness))
     path = [
         0.001 * corner * (1 + 0j),
         band + 0j,
@@ -574,13 +580,17 @@ def _bent_nodes(
 
 
 def _real_nodes(m: Medium, length: float, finer: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Panels over 0 < kx < k0 in alpha, kx = k0 sin(alpha), graded towards the branch points; and kz."""
+    """Panels over 0 < kx < k0 in alpha, kx = k0 sin(alpha), graded towards the branch points inside; and kz.
+
+    Not towards k0, where alpha itself takes the root out: a kx that rounds to k0 has no response.
+    """
     stops = np.arcsin(np.unique(np.clip([0, *(b / m.k0 for b in m.branches() if b < m.k0 * (1 - 1e-12)), 1], 0, 1)))
     nodes, weights, across = [], [], []
     for lo, hi in itertools.pairwise(stops):
         fine = np.linspace(lo, hi, math.ceil(finer * (4 + m.k0 * length / 6)))
         steep = (hi - lo) / 2 * 2.0 ** -np.arange(1, 26)
-        a, w = _panels(np.unique(np.concatenate([fine, lo + steep, hi - steep])))
+        graded = [lo + steep] * int(lo > 0) + [hi - steep] * int(hi < stops[-1])
+        a, w = _panels(np.unique(np.concatenate([fine, *graded])))
         nodes.append(m.k0 * np.sin(a))
         weights.append(m.k0 * np.cos(a) * w)
         across.append(m.k0 * np.cos(a))
@@ -751,7 +761,7 @@ def limit_table(ds: xr.Dataset) -> str:
 
 
 def verdicts(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """Which cases are what; an error counts less what the truth itself may be off."""
+    """Which cases are what; an error counts less what the truth itself may be off, below which it judges no estimate."""
     status = ds.status.values
     judged = status == "answered"
     error = ds.error.values - ds.truth_error.values
@@ -762,7 +772,7 @@ def verdicts(ds: xr.Dataset) -> dict[str, np.ndarray]:
         "without truth": status == "no truth",
         "warned": ds.warned.values.astype(bool),
         "broken": judged & (error > ds.rtol.values) & ~ds.warned.values.astype(bool),
-        "too sure": judged & (error > 3 * ds.estimate.values),
+        "too sure": judged & (error > 3 * np.maximum(ds.estimate.values, ds.truth_error.values)),
     }
 
 
