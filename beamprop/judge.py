@@ -70,6 +70,18 @@ def noise(checks: Checks, reach: Reach) -> float:
     return float(np.max(change, initial=0.0, where=np.isfinite(change)))
 
 
+def arriving_band(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> float:
+    """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
+    k = np.geomspace(0.01 * reach.k0, reach.band, 400)
+    h = np.abs(checks.transfer(k.astype(complex), checks.z))
+    launched = np.max(np.abs(checks.fan.spectra(k, s.k0)) + np.abs(checks.fan.spectra(-k, s.k0)), axis=0)
+    size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # by decade of kx
+    size = np.maximum.accumulate(size[:, ::-1], axis=1)[:, ::-1]  # edges have spectra with zeros
+    strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
+    last = int(np.flatnonzero(strong)[-1]) if np.any(strong) else 0
+    return float(k[min(last + 1, k.size - 1)])
+
+
 def difference(s: Scene, checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
     """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what is the band's edge."""
     fan = checks.fan

@@ -94,7 +94,7 @@ def choose_line(
     if not fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol)
     search = _Search(s, checks, reach, rtol)
-    straight = _straight_solution(search, x) if search.plan.band * search.plan.window < 2 * np.pi * MOST_MODES else None
+    straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
         return straight
     bent = _bent_solution(search)
@@ -108,8 +108,16 @@ class _Search:
         self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
         self.noise = judge.noise(checks, reach)
         self.plan: BentPlan = spectral.plan_bent(reach, rtol, self.noise)
+        if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
+            self.reach = reach._replace(band=judge.arriving_band(s, checks, reach, rtol * 1e-3))
+            self.plan = spectral.plan_bent(self.reach, rtol, self.noise)
         self.found, self.searched = modes.NONE, 0.0 if checks.guided else math.inf
         self.judged_by: BentPlan | None = None  # the last plan by which a straight line was judged
+
+    def too_wide(self) -> bool:
+        """Whether the present plan takes too many plane waves."""
+        second = self.plan.other()
+        return second.band * second.window > 2 * np.pi * MOST_MODES
 
     def look(self) -> modes.Between:
         """Modes above the path of the present plan, searched for as far as its band goes."""
@@ -144,7 +152,7 @@ def _bent_solution(search: _Search) -> Solution:
     in_vain = 0
     for _ in range(ATTEMPTS):
         plan = search.plan
-        if plan.other().band * plan.other().window > 2 * np.pi * MOST_MODES:
+        if search.too_wide():
             break
         found = search.look()
         if found is modes.UNCLEAR and shrinks == 0:

@@ -93,6 +93,17 @@ def test_slits_launched_in_front_keep_rtol():
     assert float(fine.error_estimate) < 1e-10
 
 
+@pytest.mark.parametrize("periods", [1, 20])
+def test_slits_on_the_face_of_a_slab_are_seen_behind_it(periods):
+    """No air between them and the slab: the band is what the slab lets through."""
+    slab, slits = bp.Slab(bp.lmmd_cell(0.05, 0.0), periods), bp.Slits(0.02, 0.05)
+    x, z = np.linspace(-0.1, 0.1, 21), [slab.thickness, 0.2]
+    rough, fine = (bp.field(slab, slits, F, x, z, rtol=rtol) for rtol in (1e-4, 1e-10))
+    apart = np.abs(rough.p - fine.p).max("x") / np.abs(fine.p).max("x")
+    assert apart.max() < 1e-4
+    assert fine.error_estimate < 1e-10
+
+
 def test_slits_on_their_own_plane_are_refused():
     """On the launch plane itself nothing decays: |S| falls as 1/kx, and rtol = 1e-3 would take millions of waves."""
     with pytest.raises(ValueError, match="plane waves"):

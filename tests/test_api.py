@@ -674,10 +674,7 @@ def test_a_rotated_beam_has_its_waist_across_its_axis(angle):
 @pytest.mark.parametrize(
     "beam",
     [
-        pytest.param(
-            bp.Slits(0.02, 0.05),
-            marks=pytest.mark.xfail(run=False, reason="a band of up to 1e13 rad/m: memory and minutes, or refused"),
-        ),
+        bp.Slits(0.02, 0.05, 1),
         bp.GaussianBeam(0.096, form="rotated", z0=-0.1),
         bp.Profile(np.linspace(-0.3, 0.3, 121), np.exp(-((np.linspace(-0.3, 0.3, 121) / 0.08) ** 2))),
     ],

@@ -367,10 +367,6 @@ def test_mirror_symmetry_at_normal_incidence():
     assert even_error(bp.GaussianBeam(0.08, z0=-0.1), Z, RTOL) < 4 * RTOL
 
 
-@pytest.mark.xfail(
-    run=False,
-    reason="the band of Slits is that of its spectrum alone, up to 1e13 rad/m: memory and minutes, or refused",
-)
 def test_mirror_symmetry_of_slits():
     """Two slits have an even field behind the slab, at the default rtol."""
     assert even_error(bp.Slits(0.02, 0.05, z0=-0.02), SLAB.thickness, 1e-8) < 4e-8

@@ -85,11 +85,14 @@ def solve(
         per_incident = size / forward
         t = per_incident * np.exp(-near.log)
         r = backward / forward
-        if np.any(vanishing := _has_vanishing_layer(segments)):
-            t = np.where(vanishing & (kx != 0), 0.0, t)
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
         if z.size:
             inside = fill_inside(stations, omega, kx, z, near.log, per_incident)
+        wall = _wall(segments)
+        if np.any(np.isfinite(wall)):
+            blocked = np.isfinite(wall) & (kx != 0)
+            t = np.where(blocked, 0.0, t)
+            inside = np.where(blocked[:, None] & (z[:, None] >= wall[:, :, None]), 0.0, inside)
     return Response(r, t, inside)
 
 
@@ -98,9 +101,17 @@ def _alike(front: FluidValues, behind: FluidValues) -> bool:
     return all(bool((a == b).all()) for a, b in zip(front, behind, strict=True))
 
 
-def _has_vanishing_layer(segments: list[SegmentValues]) -> np.ndarray:
-    """(F, 1): whether some layer has an isotropic density of exactly zero."""
-    return np.any([np.any(s.layers.vanishing, axis=0) for s in segments], axis=0)[:, None]
+def _wall(segments: list[SegmentValues]) -> np.ndarray:
+    """(F, 1): depth of the first layer whose isotropic density is exactly zero: p = 0 from there on unless kx = 0; or inf.
+
+    In it dp/dz = rho q = 0, while dq/dz = (kx^2/rho - w^2/K) p is finite for p = 0 alone.
+    """
+    wall, start = np.array(np.inf), 0.0
+    for layers, periods in segments:
+        near = start + np.concatenate([[0.0], np.cumsum(layers.thickness)[:-1]])
+        wall = np.minimum(wall, np.min(np.where(layers.vanishing, near[:, None], np.inf), axis=0))
+        start += periods * float(layers.thickness.sum())
+    return wall[:, None]
 
 
 def _grazing(
