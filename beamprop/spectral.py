@@ -112,11 +112,16 @@ def open_line(plan: OpenPlan) -> Line:
     first = -math.ceil(np.max(np.minimum(plan.band, 6.5 * plan.delta) / ds))
     m = np.arange(first, math.ceil(np.max(plan.band / ds)) + 1)
     k = ds[..., None] * m - 1j * np.asarray(plan.sigma)[..., None]
-    # plain: chi = erfc(-k/delta)/2 everywhere. |erfc(u + iv)| < exp(v^2 - u^2) for u > 1: beyond u^2 = v^2 + 37, chi = 1.
+    # plain: chi = erfc(-k/delta)/2 everywhere. |erfc(u + iv)| < exp(v^2 - u^2) for u > 1: beyond u^2 = v^2 + 37, chi = 1;
+    # and chi(k) = 1 - conj(chi(-conj k)), so that the nodes on the right follow from those on the left.
     near = np.max(np.sqrt(37 * np.square(plan.delta) + np.square(plan.sigma)) / ds)
-    bend = slice(0, max(0, math.ceil(near) - first))
+    size = max(-first, math.ceil(min(near, m[-1])))
+    left = ds[..., None] * np.arange(-size, 1) - 1j * np.asarray(plan.sigma)[..., None]
+    left = erfc(-left / np.asarray(plan.delta)[..., None]) / 2
     chi = np.ones(k.shape, complex)
-    chi[..., bend] = erfc(-k[..., bend] / np.asarray(plan.delta)[..., None]) / 2
+    chi[..., : 1 - first] = left[..., size + first :]
+    right = min(size, m[-1])
+    chi[..., 1 - first : 1 - first + right] -= np.conj(left[..., :size][..., ::-1][..., :right])
     return Line(k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta)
 
 
