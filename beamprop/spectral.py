@@ -76,10 +76,6 @@ class OpenPlan(NamedTuple):
         return OpenPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
-#: The numbers of a plan, which balance one another, are taken as found once the window changes by less than this share.
-SETTLED = 1e-6
-
-
 def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
     """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything."""
     decades = math.log(20 / rtol) * tighten
@@ -89,14 +85,14 @@ def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
     delta = reach.branch / math.sqrt(decades)
     sigma, window = rounding / (X + 30 / k), X
     for _ in range(30):
-        before = window
+        before = sigma, delta, window
         spread = np.sqrt(4 / delta**2 + (Z * delta / k) ** 2)
         guard = spread * np.sqrt(sigma * window + decades)
         window = np.maximum(X + reach.source + guard, decades / sigma)
         sigma = np.minimum(np.minimum(decades / window, rounding / X), 3.0 * k / (Z * delta))
         steep = reach.branch / np.sqrt(decades + Z * np.sqrt(reach.branch * sigma))
         delta = np.minimum(steep, np.sqrt(2 * k / Z))
-        if np.all(np.abs(window - before) <= SETTLED * window):
+        if all(np.all(new == old) for new, old in zip((sigma, delta, window), before, strict=True)):
             break
     return OpenPlan(sigma, delta, np.maximum(window, decades / sigma), reach.band)
 
