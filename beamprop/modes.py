@@ -323,7 +323,7 @@ def between(s: Scene, depth: float, band: float) -> Between:
 def _few_modes(s: Scene, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
     f = dispersion_of(s)
-    total = winding(f, box.outline(24, min(s.branches)), 1e-9 * box.right, MOST_VALUES)
+    total = winding(f, box.outline(48, min(s.branches)), 1e-9 * box.right, MOST_VALUES)
     if total <= 0:
         return []
     found: list[complex] = []
