@@ -154,7 +154,7 @@ class GaussianBeam(_Tilted):
         ``S = S_waist(kappa) dkappa/dkx`` for |kx| < k0, and 0 beyond.
         """
         kx = np.asarray(kx)
-        shift = np.exp(-1j * kx * self.x0)
+        shift = np.exp(-1j * kx * self.x0) if self.x0 else 1.0
         if self.form == "launch":
             return super().spectrum(kx, k0) * shift
         kx = kx.real

@@ -7,7 +7,9 @@ settings. `describe` turns an object into such a record and `rebuild` makes the 
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
+import math
 from typing import Any
 
 import numpy as np
@@ -35,15 +37,18 @@ _RECORDS: dict[str, type] = {
     )
 }
 
+_KINDS = frozenset(_RECORDS.values())
+
 
 def describe(value: Any, frequency: np.ndarray) -> Any:
     """A JSON-ready record of a structure, beam or setting.
 
     A property that is some user's function of frequency is recorded by its values at `frequency` [Hz].
     """
-    if type(value) in _RECORDS.values():
-        fields = {f.name: describe(getattr(value, f.name), frequency) for f in dataclasses.fields(value)}
-        return {"type": type(value).__name__, **fields}
+    kind: Any = type(value)
+    if kind in _KINDS:
+        fields = {name: describe(getattr(value, name), frequency) for name in _field_names(kind)}
+        return {"type": kind.__name__, **fields}
     if isinstance(value, complex | np.complexfloating):
         return {"re": _number(value.real), "im": _number(value.imag)}
     if isinstance(value, np.ndarray):
@@ -60,8 +65,13 @@ def describe(value: Any, frequency: np.ndarray) -> Any:
     raise TypeError(f"no record for {type(value).__name__}")
 
 
+@functools.cache
+def _field_names(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
+
+
 def _number(value: Any) -> float | str:
-    return float(value) if np.isfinite(value) else str(float(value))
+    return float(value) if math.isfinite(value) else str(float(value))
 
 
 def rebuild(record: Any) -> Any:

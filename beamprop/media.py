@@ -423,22 +423,23 @@ def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
     seen: dict[Fluid, FluidValues] = {}
     rows = []
     for layer in cell.layers:
-        if isinstance(layer, Membrane):
-            zero = np.zeros(frequency.shape, complex)
-            rows.append((layer.at(frequency), zero, zero, zero.real > 0))
+        if isinstance(layer, Membrane):  # mass on no thickness, which nothing moves along x
+            rows.append(
+                FluidValues(layer.at(frequency), np.full(frequency.shape, np.inf + 0j), np.ones(frequency.shape))
+            )
             continue
         if layer.fluid not in seen:
             seen[layer.fluid] = layer.fluid.at(frequency)
-        rho_z, rho_x, K = seen[layer.fluid]
-        vanishing = (rho_z == 0) & (rho_x == 0)
-        rho_z = np.where(vanishing, TINY_DENSITY, rho_z)
-        inverse_rho_x = np.zeros(frequency.shape, complex)
-        np.divide(1, np.where(vanishing, TINY_DENSITY, rho_x), out=inverse_rho_x, where=np.isfinite(rho_x))
-        d = layer.thickness
-        rows.append((rho_z * d, d / K, inverse_rho_x * d, vanishing))
-    columns = [np.stack(column) for column in zip(*rows, strict=True)]
+        rows.append(seen[layer.fluid])
+    rho_z, rho_x, K = (np.stack(column) for column in zip(*rows, strict=True))
+    vanishing = (rho_z == 0) & (rho_x == 0)
+    if vanishing.any():
+        rho_z, rho_x = (np.where(vanishing, TINY_DENSITY, rho) for rho in (rho_z, rho_x))
+    mobility = np.divide(1, rho_x, out=np.zeros(rho_x.shape, complex), where=np.isfinite(rho_x))
     thickness = np.array([layer.thickness for layer in cell.layers])
-    return LayerValues(columns[0], columns[1], columns[2], thickness, columns[3])
+    d = thickness[:, None]
+    mass = rho_z * np.where([[isinstance(layer, Membrane)] for layer in cell.layers], 1.0, d)
+    return LayerValues(mass, d / K, mobility * d, thickness, vanishing)
 
 
 def slab_values(slab: Slab, frequency: np.ndarray) -> list[SegmentValues]:

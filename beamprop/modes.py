@@ -340,14 +340,14 @@ def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
     """Whether there is a mode in a box, its upper side raised by `above` to the right of `edge`: one search, mostly in vain."""
     values = (np.array([v]) for v in (*box, min(s.branches), edge, above))
     left, right, low, high, near, beyond, lift = values
-    path = outlines(left, right, low, high, 24, near, (beyond, lift))[0]
+    path = outlines(left, right, low, high, 48, near, (beyond, lift))[0]
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
 def _few_modes(s: Scene, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
     f = dispersion_of(s)
-    total = winding(f, box.outline(24, min(s.branches)), FINEST * box.right, MOST_VALUES)
+    total = winding(f, box.outline(48, min(s.branches)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
     found: list[complex] = []

@@ -215,16 +215,17 @@ def _measured(
     top = np.argmax(size, axis=-1)
     ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
     dx = plan.window / x.shape[-1]
-    position = _newton_peak(modal, x[rows, top], dx)
-    peak = np.abs(modal.value(position[:, None])[:, 0])
+    slopes = modal.slopes(2)
+    position = _newton_peak(modal, slopes, x[rows, top], dx)
+    peak = np.abs(modal.at(position[:, None], slopes)[0, :, 0])
     edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
     good = (edge < EDGE * level * peak) & (peak > 0)
     crossing, found = _crossings(x, np.abs(p), valid, top, position, peak, level)
     good &= found
-    edges = _newton_level(modal, *crossing, level * peak)
+    edges = _newton_level(modal, slopes, *crossing, level * peak)
     check = np.concatenate([edges, position[:, None]], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        error = 1.5 * np.max(np.abs(modal.value(check) - second.value(check)), axis=-1) / peak
+        error = 1.5 * np.max(np.abs(modal.at(check, slopes)[0] - second.value(check)), axis=-1) / peak
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     good &= np.nan_to_num(error, nan=1.0) <= rtol
@@ -259,9 +260,9 @@ def _crossings(
     return (inner, outer, inner + share * (outer - inner)), found
 
 
-def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
+def _newton_peak(modal: Modes, slopes: np.ndarray, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     """Where |p|^2 is largest within a sample of start."""
-    x, slopes = start, modal.slopes(2)
+    x = start
     for _ in range(5):
         p, slope, bend = modal.at(x[:, None], slopes)[..., 0]
         first = (p.conj() * slope).real
@@ -274,12 +275,12 @@ def _newton_peak(modal: Modes, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
 
 
 def _newton_level(
-    modal: Modes, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
+    modal: Modes, slopes: np.ndarray, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
 ) -> np.ndarray:
     """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
-    x, size, slopes = guess, np.abs(outer - inner), modal.slopes(1)
+    x, size = guess, np.abs(outer - inner)
     for _ in range(9):
-        p, slope = modal.at(x, slopes)
+        p, slope, _ = modal.at(x, slopes)
         excess = np.abs(p) ** 2 - target[:, None] ** 2
         inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
         steep = 2 * (p.conj() * slope).real

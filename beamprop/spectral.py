@@ -76,10 +76,6 @@ class OpenPlan(NamedTuple):
         return OpenPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
-#: The numbers of a plan, which balance one another, are taken as found once the window changes by less than this share.
-SETTLED = 1e-6
-
-
 def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
     """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything."""
     decades = math.log(20 / rtol) * tighten
@@ -89,14 +85,14 @@ def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
     delta = reach.branch / math.sqrt(decades)
     sigma, window = rounding / (X + 30 / k), X
     for _ in range(30):
-        before = window
+        before = sigma, delta, window
         spread = np.sqrt(4 / delta**2 + (Z * delta / k) ** 2)
         guard = spread * np.sqrt(sigma * window + decades)
         window = np.maximum(X + reach.source + guard, decades / sigma)
         sigma = np.minimum(np.minimum(decades / window, rounding / X), 3.0 * k / (Z * delta))
         steep = reach.branch / np.sqrt(decades + Z * np.sqrt(reach.branch * sigma))
         delta = np.minimum(steep, np.sqrt(2 * k / Z))
-        if np.all(np.abs(window - before) <= SETTLED * window):
+        if all(np.all(new == old) for new, old in zip((sigma, delta, window), before, strict=True)):
             break
     return OpenPlan(sigma, delta, np.maximum(window, decades / sigma), reach.band)
 
@@ -112,11 +108,16 @@ def open_line(plan: OpenPlan) -> Line:
     first = -math.ceil(np.max(np.minimum(plan.band, 6.5 * plan.delta) / ds))
     m = np.arange(first, math.ceil(np.max(plan.band / ds)) + 1)
     k = ds[..., None] * m - 1j * np.asarray(plan.sigma)[..., None]
-    # plain: chi = erfc(-k/delta)/2 everywhere. |erfc(u + iv)| < exp(v^2 - u^2) for u > 1: beyond u^2 = v^2 + 37, chi = 1.
+    # plain: chi = erfc(-k/delta)/2 everywhere. |erfc(u + iv)| < exp(v^2 - u^2) for u > 1: beyond u^2 = v^2 + 37, chi = 1;
+    # and chi(k) = 1 - conj(chi(-conj k)), so that the nodes on the right follow from those on the left.
     near = np.max(np.sqrt(37 * np.square(plan.delta) + np.square(plan.sigma)) / ds)
-    bend = slice(0, max(0, math.ceil(near) - first))
+    size = max(-first, math.ceil(min(near, m[-1])))
+    left = ds[..., None] * np.arange(-size, 1) - 1j * np.asarray(plan.sigma)[..., None]
+    left = erfc(-left / np.asarray(plan.delta)[..., None]) / 2
     chi = np.ones(k.shape, complex)
-    chi[..., bend] = erfc(-k[..., bend] / np.asarray(plan.delta)[..., None]) / 2
+    chi[..., : 1 - first] = left[..., size + first :]
+    right = min(size, m[-1])
+    chi[..., 1 - first : 1 - first + right] -= np.conj(left[..., :size][..., ::-1][..., :right])
     return Line(k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta)
 
 

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
@@ -203,9 +204,14 @@ def test_slab_options(options, slab):
     ],
 )
 def test_beam_options(options, beam):
-    """Every option of the beam changes the beam as its words say."""
-    got = json.loads(good("width", *P, "--frequency", "2500", *options, "--json").stdout)["data_vars"]
-    want = bp.beam_width(SLAB, beam, 2500.0)
+    """Every option of the beam changes the beam as its words say; at 30 degrees a second hump is half as high, and said."""
+    result = good("width", *P, "--frequency", "2500", *options, "--json")
+    got = json.loads(result.stdout)["data_vars"]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        want = bp.beam_width(SLAB, beam, 2500.0)
+    assert [str(w.message) for w in caught if f"warning: {w.message}" not in result.stderr] == []
+    assert ("met up to 4 times" in result.stderr) == (options == ["--angle", "30"])
     for name in ("fwhm_launch", "fwhm_in", "fwhm_out", "centroid_out"):
         assert got[name]["data"] == pytest.approx(want[name].item(), rel=1e-6, abs=1e-9)
 

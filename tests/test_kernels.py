@@ -157,6 +157,15 @@ def test_exponentials_near_one(size):
     np.testing.assert_allclose(less, np.expm1(z), rtol=2e-15)
 
 
+@pytest.mark.parametrize("size", [1e-9, 0.5, 2.0, 30.0])
+def test_exponentials_less_one(size):
+    """To the rounding of the exponent, which is what the answer inherits."""
+    rng = np.random.default_rng(8)
+    z = size * np.sqrt(rng.random(500)) * np.exp(1j * np.pi * (0.5 + rng.random(500)))
+    wanted = np.expm1(z)
+    assert np.all(np.abs(cells._expm1(z) - wanted) <= 3e-16 * (np.abs(wanted) + (np.abs(z) >= 1)))
+
+
 @pytest.mark.parametrize("count", [1, 7, 450])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_powers_of_a_cell(seed, count):
@@ -335,6 +344,25 @@ def test_an_open_line(seed):
         line = spectral.open_line(plan)
         d, w = (np.asarray(v)[..., None] for v in (plan.delta, plan.window))
         np.testing.assert_allclose(line.weight, erfc(-line.k / d) / 2 / w, rtol=1e-14)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_plan_has_come_to_rest(seed):
+    """The same numbers as after all 30 rounds."""
+    rng = np.random.default_rng(seed)
+    k, extent, source, path = (rng.uniform(*ends, 4) for ends in ((20, 80), (0.2, 3), (0.1, 0.5), (0.0, 5)))
+    branch, rtol = k * rng.uniform(0.2, 1, 4), 10 ** rng.uniform(-11, -2)
+    found = spectral.plan_open(spectral.Reach(k, branch, 3 * k, extent, source, path), rtol)
+    decades, rounding = math.log(20 / rtol), max(2.0, math.log(rtol / (100 * spectral.EPS)))
+    Z, X = np.maximum(path, 1e-3 / k), np.maximum(extent, source)
+    delta, sigma, window = branch / math.sqrt(decades), rounding / (X + 30 / k), X
+    for _ in range(30):
+        guard = np.sqrt(4 / delta**2 + (Z * delta / k) ** 2) * np.sqrt(sigma * window + decades)
+        window = np.maximum(X + source + guard, decades / sigma)
+        sigma = np.minimum(np.minimum(decades / window, rounding / X), 3.0 * k / (Z * delta))
+        delta = np.minimum(branch / np.sqrt(decades + Z * np.sqrt(branch * sigma)), np.sqrt(2 * k / Z))
+    for got, want in zip(found[:3], (sigma, delta, np.maximum(window, decades / sigma)), strict=True):
+        close(got, want)
 
 
 def test_fast_lengths():

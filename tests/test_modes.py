@@ -178,6 +178,23 @@ def test_turns_about_zeros_that_are_known(seed, near):
     ].tolist() == [wanted, wanted]
 
 
+def test_turns_about_pairs_of_zeros_beside_the_outline():
+    """Zeros at distances of 1e-4 to 10 rad/m from the long sides of a box of the search, two of them close together."""
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        width, depth, m = rng.uniform(80, 250), rng.uniform(3, 12), int(rng.integers(2, 12))
+        box = modes.Box(0.05, width, -depth, 0.0)
+        beside = 10 ** rng.uniform(-4, 1, m) * rng.choice([-1, 1], m)
+        zeros = rng.uniform(0, width, m) + 1j * (rng.choice([0, -depth], m) + beside)
+        zeros[1] = zeros[0] + 10 ** rng.uniform(-4, 0.5) * np.exp(2j * np.pi * rng.random())
+
+        def f(k, zeros=zeros):
+            return np.prod(k[..., None] - zeros, axis=-1), np.zeros(k.shape)
+
+        wanted = sum(box.holds(k, 0.0) for k in zeros)
+        assert modes.winding(f, box.outline(48, K0), 1e-9 * width) == wanted, seed
+
+
 @pytest.mark.parametrize("nodes", [1, 5, 24])
 def test_outlines_go_around_once(nodes):
     """Corners in turn, counter-clockwise, each side from corner to corner; more nodes beside a branch point."""

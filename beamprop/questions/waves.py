@@ -48,13 +48,14 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     res = response.solve(slab_values(slab, flat), before, after, omega, k)
     if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
         raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    energy, absorption = _energies(res.r, res.t, k, omega, before, after)
+    reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    energy, absorption = _energies(reflectivity, transmissivity, k, omega, before, after)
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {
         "r": res.r,
         "t": res.t,
-        "transmissivity": np.abs(res.t) ** 2,
-        "reflectivity": np.abs(res.r) ** 2,
+        "transmissivity": transmissivity,
+        "reflectivity": reflectivity,
         "energy_transmission": energy,
         "absorption": absorption,
     }
@@ -63,16 +64,20 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
 
 
-def _energies(r: np.ndarray, t: np.ndarray, kx: np.ndarray, omega: np.ndarray, before: Any, after: Any) -> tuple:
+def _energies(
+    reflectivity: np.ndarray, transmissivity: np.ndarray, kx: np.ndarray, omega: np.ndarray, before: Any, after: Any
+) -> tuple[np.ndarray, np.ndarray]:
     """energy_transmission and absorption; nan where the incident wave carries no power of its own."""
     front, behind = ([v[:, None] for v in fluid] for fluid in (before, after))
-    y1 = outgoing_kz(kx, omega, *front) / front[0]
-    y2 = (outgoing_kz(kx, omega, *behind) / behind[0]).real
+    kz1 = outgoing_kz(kx, omega, *front)
+    alike = all(np.array_equal(a, b) for a, b in zip(front, behind, strict=True))
+    y1 = kz1 / front[0]
+    y2 = (y1 if alike else outgoing_kz(kx, omega, *behind) / behind[0]).real
     lossless = np.all([np.imag(v) == 0 for v in front], axis=0)
     carries = lossless & (np.imag(kx) == 0) & (np.abs(y1.imag) <= 1e-12 * np.abs(y1))
-    ratio = np.divide(y2, y1.real, out=np.where(t == 0, 0.0, 1.0), where=carries & (y1.real != 0))
-    T = np.where(carries, np.abs(t) ** 2 * ratio, np.nan)
-    return T, 1 - np.abs(r) ** 2 - T
+    ratio = np.divide(y2, y1.real, out=np.where(transmissivity == 0, 0.0, 1.0), where=carries & (y1.real != 0))
+    T = np.where(carries, transmissivity * ratio, np.nan)
+    return T, 1 - reflectivity - T
 
 
 def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, dims: tuple, pick: tuple) -> dict:
