@@ -187,7 +187,7 @@ def _bent_solution(search: _Search) -> Solution:
 
 
 #: What share of its window a straight line is tried with first, and how much more of everything it is given then.
-TRIES = ((0.85, 1.0), (1.0, 1.0), (1.0, 1.4))
+TRIES = ((0.78, 1.0), (0.9, 1.0), (1.0, 1.4))
 
 
 def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
@@ -202,7 +202,7 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
     search.judged_by = plan
     size, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
-        straight = spectral.plan_open(search.reach, rtol, tighten)
+        straight = spectral.plan_open(search.reach, rtol, tighten, search.noise)
         n = spectral.fast_length(max(math.ceil(share * straight.window / dx), x.size))
         if not _fft_is_cheaper(n, size, x.size) or search.look().wrong:
             return None

@@ -76,10 +76,13 @@ class OpenPlan(NamedTuple):
         return OpenPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
-def plan_open(reach: Reach, rtol: float, tighten: float = 1.0) -> OpenPlan:
-    """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything."""
+def plan_open(reach: Reach, rtol: float, tighten: float = 1.0, noise: float = EPS) -> OpenPlan:
+    """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything.
+
+    `noise` is the relative rounding of S h, which exp(sigma X) magnifies.
+    """
     decades = math.log(20 / rtol) * tighten
-    rounding = max(2.0, math.log(rtol / (100 * EPS))) / tighten
+    rounding = max(2.0, math.log(rtol / max(100 * EPS, 3 * noise))) / tighten
     k, Z = reach.k0, np.maximum(reach.path, 1e-3 / reach.k0)
     X = np.maximum(reach.extent, reach.source)
     delta = reach.branch / math.sqrt(decades)
