@@ -22,6 +22,12 @@ class Fan(NamedTuple):
     beam: Beam  #: any of them: what they share
     angles: np.ndarray  #: (B,) degree
     mix: np.ndarray | None = None
+    mixed_angles: np.ndarray | None = None  #: (A,) degree, those that `mix` makes
+
+    @property
+    def asked(self) -> np.ndarray:
+        """The asked angles: (A,) degree."""
+        return self.angles if self.mixed_angles is None else self.mixed_angles
 
     def spectra(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx) of each: (B, n)."""
@@ -38,7 +44,7 @@ class Fan(NamedTuple):
         """Some of the asked beams."""
         if self.mix is None:
             return self._replace(angles=self.angles[asked])
-        return self._replace(mix=self.mix[asked])
+        return self._replace(mix=self.mix[asked], mixed_angles=self.asked[asked])
 
     def band(self, k0: float, tolerance: float) -> float:
         """Largest |kx| at which a spectrum exceeds `tolerance` of its largest value [rad/m]."""
@@ -49,7 +55,7 @@ class Fan(NamedTuple):
         """The asked fields (A, ...) of those that were summed (B, ...), complex."""
         if self.mix is None:
             return summed
-        flat = summed.reshape(summed.shape[0], -1).view(float)
+        flat = np.ascontiguousarray(summed).reshape(summed.shape[0], -1).view(float)
         if out is None:
             out = np.empty((self.mix.shape[0], *summed.shape[1:]), complex)
         np.matmul(self.mix, flat, out=out.view(float).reshape(out.shape[0], -1))
@@ -71,7 +77,7 @@ def fan(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> Fan:
         if count < 0.6 * angles.size:
             turn = np.pi * (np.arange(count) + 0.5) / count
             nodes = middle + half * np.cos(turn)
-            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)))
+            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles)
     return Fan(beam, angles)
 
 

@@ -2,7 +2,8 @@
 
 Their difference at a few planes and positions is the error of the coarser one. What both would miss is added: the end of
 the band, and a spectrum that ends inside a line. The second line's response is taken at kx and w moved in their last bits,
-so that rounding which both share shows too.
+so that rounding which both share shows too. Errors are over the largest |p| of the plane, which may lie far from what is
+asked: a beam is looked for where it lands, too.
 """
 
 from __future__ import annotations
@@ -13,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from . import spectral
+from .beam import Beam
 from .fan import Fan
 from .scene import Scene
 from .spectral import Line, Reach
-from .transfers import Transfer
+from .transfers import Transfer, shifts
 
 #: How far kx and w are moved.
 SHIFT = 4 * spectral.EPS
@@ -32,6 +34,7 @@ class Checks(NamedTuple):
     x: np.ndarray
     z: np.ndarray
     guided: bool  #: whether the transfer knows guided modes (none without a slab)
+    bright: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
 
 
 class Sampled(NamedTuple):
@@ -59,15 +62,75 @@ def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
     return Sampled(line, checks.transfer(line.k, checks.z, SHIFT if moved else 0.0))
 
 
-def noise(checks: Checks, reach: Reach) -> float:
-    """Relative rounding of the response at the first and last plane, seen in its change when k changes in the last bits."""
-    k = np.linspace(0.03, min(reach.band, 3 * reach.k0), 24) * (1 - 0.05j)
-    planes = checks.z[[0, -1]] if checks.z.size > 1 else checks.z
-    both = checks.transfer(np.concatenate([k, k * (1 + SHIFT)]), planes)
-    a, b = both[:, : k.size], both[:, k.size :]
+class Survey(NamedTuple):
+    """What a first look at the response tells."""
+
+    noise: float  #: relative rounding of the response at the first and last plane
+    bright: np.ndarray  #: see `Checks`
+
+
+def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach) -> Survey:
+    """Rounding, seen in the change of the response when k changes in the last bits; and where beams land, by stationary phase."""
+    k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
+    asked = fan.asked
+    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    step = 1e-4 * s.k0
+    rays = np.stack([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
+    beside = np.abs(np.stack([rays - step, rays + step]))  # the response is even in kx
+    h = transfer(np.concatenate([k, k * (1 + SHIFT), beside.ravel()]), z)
+    a, b, low, high = np.split(h, [k.size, 2 * k.size, 2 * k.size + rays.size], axis=1)
+    least, most = shifts(*(v.reshape(z.size, *rays.shape) for v in (low, high)), step)
+    middle, half = fan.beam.centre + (least + most) / 2, fan.beam.reach(0.1) + (most - least) / 2
+    inside = (middle > x.min() - half / 2) & (middle < x.max() + half / 2)
+    bright = np.zeros((asked.size, z.size))
+    if not np.all(inside):
+        places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
+        bright = _between(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
+    return Survey(_change(*(v[[0, -1]] if z.size > 1 else v for v in (a, b))), bright)
+
+
+def _change(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest relative change from a to b, over the largest of each row."""
     size = np.max(np.abs(a), axis=1, keepdims=True)
     change = np.abs(a - b) / np.where(size > 0, size, 1.0)
     return float(np.max(change, initial=0.0, where=np.isfinite(change)))
+
+
+def _strong(beam: Beam, k0: float) -> np.ndarray:
+    """A few strong plane waves of a beam that propagate, or nearly."""
+    lo, hi = beam.band(k0, 0.3)
+    return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
+
+
+#: The most nodes over the propagating waves by which a beam is looked for where it lands.
+MOST_RAYS = 20_000
+
+
+def _brightness(
+    s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray
+) -> np.ndarray:
+    """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
+    x = x - fan.beam.centre
+    path = float(z.max()) - fan.beam.z0 + s.thickness
+    count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
+    found = np.full((2, angles.size, z.size), np.inf)
+    if count > MOST_RAYS:
+        return np.zeros(found.shape[1:])
+    beams = Fan(fan.beam, angles)
+    for i, more in enumerate((1.0, 1.4)):
+        line = spectral.propagating_line(s.k0, list(s.branches), int(more * count))
+        right, left = amplitudes(s, beams, line)
+        with np.errstate(invalid="ignore", over="ignore"):
+            p = spectral.direct_sum(line, transfer(line.k, z), right, left, x)
+            found[i] = np.max(np.abs(p), axis=2)
+    return np.nan_to_num(found.min(axis=0), nan=0.0, posinf=0.0)
+
+
+def _between(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (P, Z) at `known`, increasing, brought to `at`: the less of both neighbours."""
+    above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
+    below = np.where(known[above] == at, above, np.maximum(above - 1, 0))
+    return np.minimum(values[above], values[below])
 
 
 def arriving_band(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> float:
@@ -90,6 +153,7 @@ def difference(s: Scene, checks: Checks, one: Sampled, two: Sampled) -> tuple[np
     a = fan.mixed(np.asarray(spectral.direct_sum(one.line, one.h, right1, left1, x)))
     b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
+    largest = np.maximum(largest, checks.bright)
     seen = largest > DARK
     scale = np.where(seen, largest, 1.0)
     edge = np.zeros(largest.shape)
@@ -114,18 +178,17 @@ def amplitudes(s: Scene, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
 def _mixing(s: Scene, fan: Fan, one: Sampled, mixed: np.ndarray, x: np.ndarray) -> np.ndarray:
     """Error of fields mixed from those at the nodes, by plane: five of the asked angles, summed themselves; (Z,)."""
     assert fan.mix is not None
-    asked = np.unique(np.linspace(0, fan.mix.shape[0] - 1, 5).round().astype(int))
-    angles = np.degrees(np.arcsin(np.clip(fan.mix[asked] @ np.sin(np.radians(fan.angles)), -1, 1)))
-    right, left = amplitudes(s, Fan(fan.beam, angles), one.line)
-    apart = spectral.direct_sum(one.line, one.h, right, left, x) - mixed[asked]
+    some = np.unique(np.linspace(0, fan.asked.size - 1, 5).round().astype(int))
+    right, left = amplitudes(s, Fan(fan.beam, fan.asked[some]), one.line)
+    apart = spectral.direct_sum(one.line, one.h, right, left, x) - mixed[some]
     return 3 * np.max(np.abs(apart), axis=(0, 2))
 
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
-    """Size of what lies beyond the end of a line: its last two tenths, continued geometrically; (B, Z)."""
-    n = end.line.k.size
-    tenth = max(1, n // 10)
-    tail = slice(max(0, n - 2 * tenth), n)
+    """Size of what lies beyond the end of a path: its last two tenths, continued geometrically; (B, Z)."""
+    n, circles = end.line.k.size, end.line.circles
+    tenth = max(1, (n - circles) // 10)
+    tail = slice(max(circles, n - 2 * tenth), n)
     size = (np.abs(right[:, tail]) + np.abs(left[:, tail]))[:, None] * np.abs(end.h[:, tail])
     last, before = size[..., -tenth:].sum(axis=-1), size[..., :-tenth].sum(axis=-1)
     ratio = np.clip(last / np.maximum(before, 1e-300), 0.0, 0.95)

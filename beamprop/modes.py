@@ -207,8 +207,13 @@ def outlines(
     return out
 
 
+#: Zeros of D that lie nearer to each other than this, relative to them, are one cluster: modes of two faces that do not feel
+#: each other, which rounding does not tell apart.
+CLUSTER = 1e-6
+
+
 def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.inf) -> list[complex]:
-    """The `total` zeros of D inside a box, by halving it until Newton's method has one to find.
+    """The `total` zeros of D inside a box, by halving it until Newton's method has one to find; of a cluster, its middle.
 
     TooManyModes where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
     """
@@ -218,12 +223,16 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
     while todo:
         part, count = todo.pop()
         size = max(part.right - part.left, part.high - part.low)
-        if count == 1 or size < 1e-6 * scale:
-            k, step = refine(f, complex((part.left + part.right) / 2, (part.low + part.high) / 2), size / 8)
+        middle = complex((part.left + part.right) / 2, (part.low + part.high) / 2)
+        small = size < min(1e-6 * scale, CLUSTER * abs(middle))
+        if count == 1 or small:
+            k, step = refine(f, middle, size / 8)
             if step < 1e-9 * scale and part.holds(k, 1e-9 * scale) and _is_new(k, found, 1e-9 * scale):
-                found.append(k)
+                found += count * [k]
                 continue
-            if size < 1e-6 * scale:
+            if small:
+                if count > 1:  # a double zero is known to half the digits only, and Newton's steps end in rounding
+                    found += count * [k if part.holds(k, size) else middle]
                 continue
         for half in part.halves():
             inside = winding(f, half.outline(), 1e-9 * scale, most)
@@ -263,17 +272,17 @@ def is_lossless(s: Scene) -> bool:
     return not any(np.any(v.imag) for v in (*values, *s.before, *s.after))
 
 
-def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600) -> list[complex]:
+def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600, many: float = math.inf) -> list[complex]:
     """Zeros of a lossless slab on the axis beyond the branch points, where D is real but for a constant phase.
 
-    TooManyModes where there are far more than a path could go around.
+    TooManyModes where there are more than `many`.
     """
     k = left + (right - left) * (np.arange(samples) + 0.5) / samples
     value, log = f(k.astype(complex))
     angle = np.angle(value) + np.imag(log)
     sign = np.cos(angle - angle[0]) > 0
     at = np.flatnonzero(sign[1:] != sign[:-1])
-    if at.size > 8 * MOST_WRONG:
+    if at.size > many:
         raise TooManyModes
     found = (refine(f, complex(k[i] + k[i + 1]) / 2, (k[i + 1] - k[i]) / 2) for i in at)
     return [complex(k.real) for k, step in found if step < 1e-9 * right and abs(k.imag) < 1e-9 * right]
@@ -282,24 +291,42 @@ def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600) -> 
 def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
     """All modes in a box, and how many the argument principle counts."""
     f = dispersion_of(s)
-    lossless = is_lossless(s)
     total = winding(f, box.outline(48), 1e-9 * box.right)
-    found: list[complex] = []
-    if total > 0 and lossless and box.low < 0 < box.high:
-        for k in real_zeros(f, box.left, box.right):
-            if _is_new(k, found, 1e-9 * box.right):
-                found.append(k)
-    if len(found) < total:
-        found = zeros(f, box, box.right, total)
-    modes = [Mode(k, _direction(s, k), refine(f, k, 1e-3 * abs(k), 2)[1] / abs(k)) for k in found]
+    found = _located(s, box, total) if total > 0 else []
+    modes = [m._replace(residual=refine(f, m.kx, 1e-3 * abs(m.kx), 2)[1] / abs(m.kx)) for m in _told(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
 
 
-def _direction(s: Scene, k: complex) -> int:
+def _located(s: Scene, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:
+    """The `total` zeros of a box, those of a lossless slab on the axis by changes of sign if that finds them all.
+
+    TooManyModes where more than `many` have to be found otherwise, or it takes too long (`most`: see `zeros`).
+    """
+    f = dispersion_of(s)
+    if is_lossless(s) and box.low < 0 < box.high:
+        for samples in (600, 4800, 38_400):
+            found = real_zeros(f, box.left, box.right, samples, 8 * many)
+            if len(found) >= total:
+                return found
+    if total > many:
+        raise TooManyModes
+    return zeros(f, box, box.right, total, most)
+
+
+def _told(s: Scene, found: list[complex]) -> list[Mode]:
+    """Zeros as modes, forward or backward."""
+    return [Mode(k, _direction(s, k, found.count(k) > 1), 0.0) for k in found]
+
+
+def _direction(s: Scene, k: complex, cluster: bool = False) -> int:
     """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
-    if abs(k.imag) > 1e-9 * abs(k):
+    # a cluster is known to half the digits only, and takes more loss to be told
+    blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
+    if abs(k.imag) > blur * abs(k):
         return 1 if k.imag > 0 else -1
-    moved, _ = refine(dispersion_of(s, LOSS), k, 1e-4 * abs(k))
+    moved, _ = refine(dispersion_of(s, loss), k, 1e-4 * abs(k))
+    if cluster and abs((moved - k).imag) < blur * abs(k):
+        raise TooManyModes
     return 1 if (moved - k).imag >= 0 else -1
 
 
@@ -330,7 +357,7 @@ def between(s: Scene, depth: float, band: float) -> Between:
         found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
         if band > edge:
             found += _few_modes(s, Box(edge, band, -depth, above))
-        wrong = [m.kx for m in found if m.direction < 0]
+        wrong = list(dict.fromkeys(m.kx for m in found if m.direction < 0))  # one circle around a cluster
         return Between(tuple(wrong), tuple(_free_disc(s, k, [m.kx for m in found]) for k in wrong))
     except TooManyModes:
         return UNCLEAR
@@ -346,23 +373,13 @@ def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
 
 def _few_modes(s: Scene, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
-    f = dispersion_of(s)
-    total = winding(f, box.outline(48, min(s.branches)), FINEST * box.right, MOST_VALUES)
+    total = winding(dispersion_of(s), box.outline(48, min(s.branches)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
-    found: list[complex] = []
-    if is_lossless(s) and box.low < 0 < box.high:
-        for samples in (600, 4800, 38_400):
-            found = real_zeros(f, box.left, box.right, samples)
-            if len(found) >= total:
-                break
+    found = _located(s, box, total, MOST_WRONG, MOST_VALUES)
     if len(found) < total:
-        if total > MOST_WRONG:
-            raise TooManyModes
-        found = zeros(f, box, box.right, total, MOST_VALUES)
-    if not found:
         raise TooManyModes
-    return [Mode(k, _direction(s, k), 0.0) for k in found]
+    return _told(s, found)
 
 
 def _free_disc(s: Scene, k: complex, others: list[complex]) -> float:
@@ -423,4 +440,4 @@ def with_circles(s: Scene, line: Line, found: Between, across: float, along: flo
     if not nodes:
         return line
     # in front, so that the path's end stays the last node
-    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]))
+    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]), circles=count * len(nodes))

@@ -90,10 +90,11 @@ def choose_line(
     """
     reach = _reach(s, fan, x, z, rtol)
     points, planes = judge.check_points(x, z, fan.beam.centre, reach.source, s.thickness)
-    checks = Checks(fan, transfer, points, planes, guided)
+    noise, bright = judge.survey(s, fan, transfer, points, planes, reach)
+    checks = Checks(fan, transfer, points, planes, guided, bright)
     if not fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol)
-    search = _Search(s, checks, reach, rtol)
+    search = _Search(s, checks, reach, rtol, noise)
     straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
         return straight
@@ -104,9 +105,8 @@ def choose_line(
 class _Search:
     """The search for a line: what is known of the modes on its wrong side, and the plan that has come so far."""
 
-    def __init__(self, s: Scene, checks: Checks, reach: Reach, rtol: float) -> None:
-        self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
-        self.noise = judge.noise(checks, reach)
+    def __init__(self, s: Scene, checks: Checks, reach: Reach, rtol: float, noise: float) -> None:
+        self.scene, self.checks, self.reach, self.rtol, self.noise = s, checks, reach, rtol, noise
         self.plan: BentPlan = spectral.plan_bent(reach, rtol, self.noise)
         if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
             self.reach = reach._replace(band=judge.arriving_band(s, checks, reach, rtol * 1e-3))
@@ -173,9 +173,10 @@ def _bent_solution(search: _Search) -> Solution:
         if edge > 0.3 * rtol:
             search.plan = plan._replace(band=plan.band * 1.5)
         elif stuck:  # wider does not help: rounding, magnified by exp(depth X)
-            search.plan = plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
-        else:
-            search.plan = plan._replace(window=plan.window * 1.6)
+            search.plan = plan._replace(depth=plan.depth * .6, window=plan.window * 1.3)
+        else:  # images fall as exp(-depth W)
+            more = math.log(min(float(error.max()), 1e6) / (0.3 * rtol)) / plan.depth
+            search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
     if best is None and search.found is modes.UNCLEAR:
         raise ValueError("slab: it guides more backward waves than can be told from the forward ones; add loss")
     if best is None:

@@ -22,6 +22,7 @@ from .propagate import Transfer
 from .response import solve
 from .scene import Scene, at_frequency
 from .spectral import Line, OpenPlan, Reach
+from .transfers import shifts
 from .widths import HALF_LEVEL, centroid, crossings, full_width
 
 #: h(kx) at one plane for each frequency: (F, n) -> (F, n).
@@ -37,12 +38,16 @@ NEAR_PEAK, NEAR_EDGE = 1e-6, 1e-8
 
 
 class Measures(NamedTuple):
-    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m], how often |p| crosses the level in the window."""
+    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m]; how often |p| crosses the level in the window, and error.
+
+    The error is that of |p| over its peak.
+    """
 
     width: np.ndarray
     peak: np.ndarray
     centroid: np.ndarray
     crossings: np.ndarray
+    error: np.ndarray
 
 
 def far_face(s: Scene, z0: float) -> Plane:
@@ -67,7 +72,7 @@ def without(s: Scene, distance: np.ndarray) -> Plane:
 def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half-width (F,) of windows that hold the beam, by stationary phase.
 
-    A plane wave of amplitude h lands at -d(arg h)/dkx; the beam's strong plane waves span the window.
+    The beam's strong plane waves span the window.
     """
     lo, hi = beam.band(s.k0, 0.3)
     even = bool(np.all(lo == -hi))  # h is even in kx too: half of the plane waves show all
@@ -75,15 +80,10 @@ def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]
     k = np.clip(np.linspace(0 * lo if even else lo, hi, 21 if even else 41, axis=-1), -0.98 * k0, 0.98 * k0)
     small = 1e-4 * k0
     low, high = np.split(plane(np.concatenate([k - small, k + small], axis=-1).astype(complex)), 2, axis=-1)
-    twice = low + high
-    size = np.abs(twice)
-    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > 0)
-    slope = np.imag((high - low) / np.where(strong, small * twice, 1.0))
-    shift = np.clip(np.where(strong, -slope, 0.0), -1e4 / k0, 1e4 / k0)
+    least, most = shifts(low, high, small)
     if even:
-        shift, strong = np.concatenate([shift, -shift], axis=-1), np.concatenate([strong, strong], axis=-1)
-    most, least = shift.max(-1, where=strong, initial=-np.inf), shift.min(-1, where=strong, initial=np.inf)
-    most, least = (np.where(np.isfinite(v), v, 0.0) for v in (most, least))
+        least, most = np.minimum(least, -most), np.maximum(most, -least)
+    least, most = (np.clip(v, -1e4 / s.k0, 1e4 / s.k0) for v in (least, most))
     return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
 
 
@@ -228,9 +228,10 @@ def _measured(
         error = 1.5 * np.max(np.abs(modal.at(check, slopes)[0] - second.value(check)), axis=-1) / peak
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
-    good &= np.nan_to_num(error, nan=1.0) <= rtol
+    error = np.nan_to_num(error, nan=1.0)
+    good &= error <= rtol
     met = np.count_nonzero(np.diff(size > level * peak[:, None], axis=-1), axis=-1)
-    return Measures(edges[:, 1] - edges[:, 0], peak, place, met), good
+    return Measures(edges[:, 1] - edges[:, 0], peak, place, met, error), good
 
 
 def _crossings(
@@ -297,8 +298,8 @@ def _newton_level(
 
 def _measured_alone(
     s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
-) -> tuple[float, float, float, int]:
-    """Width, peak, centroid and crossings across the plane z, in a window that grows until its edges are below the level."""
+) -> tuple[float, float, float, int, float]:
+    """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level."""
     planes = np.array([z])
     batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
     middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
@@ -314,7 +315,7 @@ def _measured_alone(
         half *= 2
     evaluate = _between(s, beam, solution.line, h)
     found = full_width(x, p, level, evaluate)
-    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak)
+    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(solution.error[0])
 
 
 def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
@@ -335,17 +336,17 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray]:
-    """Widths at all frequencies of a scene, at one angle; and how often the level is met in the four planes, (4, F)."""
+def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
+    """Widths at all frequencies of a scene, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
     wavelengths = 2 * np.pi / s.k0
 
-    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
         route = Route(alone, without(s, distance), propagate.free, distance, distance, False)
         found = measure(route, beam, rtol)
-        return found.width, found.crossings
+        return found.width, found.crossings, found.error
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
@@ -353,15 +354,16 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple
     through = Route(s, far_face(s, beam.z0), lambda one: propagate.through(one, beam.z0), face, face - beam.z0, True)
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
-    widths, met = zip(launch, near, (far.width, far.crossings), air, strict=True)
-    return Row(*widths, far.peak, far.centroid), np.stack(met)
+    widths, met, errors = zip(launch, near, (far.width, far.crossings, far.error), air, strict=True)
+    return Row(*widths, far.peak, far.centroid), np.stack(met), np.stack(errors)
 
 
-def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray]:
-    """Widths of the launch profile itself, and crossings; |p| does not depend on the frequency."""
+def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Widths of the launch profile itself, crossings and errors; |p| does not depend on the frequency."""
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     k0 = float(s.k0[0])
     x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
     p = beam.profile(x, k0)
     found = full_width(x, p, level, lambda at: beam.profile(at, k0))
-    return np.full(s.k0.shape, found.width), np.full(s.k0.shape, crossings(p, level * found.peak))
+    met = crossings(p, level * found.peak)
+    return np.full(s.k0.shape, found.width), np.full(s.k0.shape, met), np.zeros(s.k0.shape)

@@ -6,8 +6,8 @@ measures.py: a beam as a whole.
 """
 
 from .beams import beam_width, field, fwhm
-from .checks import Progress
-from .maps import AccuracyWarning, FieldMap
+from .checks import AccuracyWarning, Progress
+from .maps import FieldMap
 from .measures import beam_measures
 from .waves import bloch, guided_modes, scattering
 

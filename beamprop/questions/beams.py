@@ -112,6 +112,8 @@ def beam_width(
     -----
     RuntimeWarning
         The half level is not met inside the window (nan), or is met more than twice in one of the four planes.
+    AccuracyWarning
+        The estimated error of |p| in one of the planes is above rtol.
     """
     checks.instance(slab, Slab, "slab")
     checks.instance(beam, Beam, "beam")
@@ -122,7 +124,7 @@ def beam_width(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
-    most = np.zeros(4, int)
+    most, worst = np.zeros(4, int), 0.0
     work = [
         (rows, j)
         for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
@@ -130,10 +132,12 @@ def beam_width(
     ]
     for rows, j in progress(work):
         s = scenes(slab, flat[rows])
-        found, met = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        found, met, errors = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
         most = np.maximum(most, met.max(axis=1).astype(int))
+        worst = max(worst, float(errors.max()))
         for name, values in found._asdict().items():
             table[name][rows, j] = values
+    checks.announce(worst, rtol)
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -12,6 +13,20 @@ from ..media import Fluid, Slab, as_number
 
 #: Wraps the items of a loop, to watch it.
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
+
+
+class AccuracyWarning(UserWarning):
+    """An answer whose estimated error is above the asked rtol."""
+
+
+def announce(error: float, rtol: float, stacklevel: int = 3) -> None:
+    """Nothing above rtol leaves a public call without a word."""
+    if error > rtol:
+        warnings.warn(
+            f"estimated error {error:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
+            AccuracyWarning,
+            stacklevel=stacklevel,
+        )
 
 
 def axis(value: Any, name: str, *, kind: type = float, positive: bool = False) -> np.ndarray:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from typing import Any
 
 import numpy as np
@@ -14,10 +13,6 @@ from ..fan import Fan, fan
 from ..media import Slab, as_number
 from ..scene import Scene, scene
 from . import checks
-
-
-class AccuracyWarning(UserWarning):
-    """A field whose estimated error is above the asked rtol."""
 
 
 class FieldMap:
@@ -88,13 +83,7 @@ class FieldMap:
 
     def announce(self) -> None:
         """Nothing above rtol leaves without a word."""
-        worst = np.max(self.errors, initial=0.0, where=np.isfinite(self.errors))
-        if worst > self.rtol:
-            warnings.warn(
-                f"estimated error {worst:.1e} of the largest |p|, above the asked rtol {self.rtol:.1e}",
-                AccuracyWarning,
-                stacklevel=3,
-            )
+        checks.announce(float(np.max(self.errors, initial=0.0, where=np.isfinite(self.errors))), self.rtol, 4)
 
     def dataset(self, p: np.ndarray | None) -> xr.Dataset:
         """The labelled answer; without p, all else."""

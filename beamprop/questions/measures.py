@@ -76,6 +76,8 @@ def beam_measures(
     -----
     RuntimeWarning
         A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice.
+    AccuracyWarning
+        The estimated error of a beam's |p| is above rtol.
     """
     checks.instance(slab, Slab, "slab")
     checks.instance(beam, Beam, "beam")
@@ -83,11 +85,14 @@ def beam_measures(
     angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
+    worst = 0.0
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
         s = scene(slab, float(flat[i]))
-        for side, beamlet in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol)):
+        for side, (beamlet, error) in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol)):
+            worst = max(worst, error)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
+    checks.announce(worst, rtol)
     _announce(table)
     dims, pick = checks.dims(frequency=f, angle=angles)
     coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
@@ -113,7 +118,8 @@ def _announce(table: dict[str, np.ndarray]) -> None:
         )
 
 
-def _both(s: Scene, beam: Beam, rtol: float) -> list[Beamlet]:
+def _both(s: Scene, beam: Beam, rtol: float) -> list[tuple[Beamlet, float]]:
+    """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
     launched = _power(s, beam, lambda kx: np.ones(kx.shape), s.before, s.k0)[0]
@@ -142,9 +148,11 @@ def _transmitted(s: Scene, z0: float) -> Face:
     return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).t[0] * _launch(s, kx, z0)
 
 
-def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float) -> Beamlet:
+def _measure(
+    s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float
+) -> tuple[Beamlet, float]:
     if not _any_beam(s, beam, face):
-        return NO_BEAM
+        return NO_BEAM, 0.0
     plane = np.array([s.thickness])
 
     def transfer(kx: np.ndarray, _: np.ndarray, shift: float = 0.0) -> np.ndarray:
@@ -166,7 +174,7 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
     centroid, spread = _moments(x, size)
     power, mean, deviation = _power(s, beam, face, fluid, _far_k(s, fluid))
     crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
-    return Beamlet(
+    beamlet = Beamlet(
         full.width,
         e2.width,
         4 * spread,
@@ -178,6 +186,7 @@ def _measure(s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, l
         mean,
         crossings,
     )
+    return beamlet, float(solution.error[0])
 
 
 #: What is said of a side without a beam.
