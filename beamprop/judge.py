@@ -70,23 +70,34 @@ class Survey(NamedTuple):
 
 
 def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach) -> Survey:
-    """Rounding, seen in the change of the response when k changes in the last bits; and where beams land, by stationary phase."""
+    """Rounding, seen in the change of the response when k changes in the last bits; and where beams land, by stationary phase.
+
+    Both at the first and the last plane: if the beam lands among the positions there, it does so between.
+    """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     asked = fan.asked
     some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
     step = 1e-4 * s.k0
-    rays = np.stack([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
-    beside = np.abs(np.stack([rays - step, rays + step]))  # the response is even in kx
-    h = transfer(np.concatenate([k, k * (1 + SHIFT), beside.ravel()]), z)
-    a, b, low, high = np.split(h, [k.size, 2 * k.size, 2 * k.size + rays.size], axis=1)
-    least, most = shifts(*(v.reshape(z.size, *rays.shape) for v in (low, high)), step)
-    middle, half = fan.beam.centre + (least + most) / 2, fan.beam.reach(0.1) + (most - least) / 2
-    inside = (middle > x.min() - half / 2) & (middle < x.max() + half / 2)
+    beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
+    ends = z[[0, -1]] if z.size > 1 else z
+    h = transfer(np.concatenate([k, k * (1 + SHIFT), beside]), ends)
+    noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
+    middle, half = _landing(fan, h[:, 2 * k.size :], some.size, step)
     bright = np.zeros((asked.size, z.size))
-    if not np.all(inside):
+    if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
+        if z.size > 1:
+            middle, half = _landing(fan, transfer(beside, z), some.size, step)
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
-        bright = _between(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
-    return Survey(_change(*(v[[0, -1]] if z.size > 1 else v for v in (a, b))), bright)
+        bright = _interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
+    return Survey(noise, bright)
+
+
+def _landing(fan: Fan, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width of the places where `count` beams land on each plane, (Z, count), from h beside their rays."""
+    low, high = (v.reshape(h.shape[0], count, -1) for v in np.split(h, 2, axis=1))
+    least, most = shifts(low, high, step)
+    return fan.beam.centre + (least + most) / 2, fan.beam.reach(0.1) + (most - least) / 2
 
 
 def _change(a: np.ndarray, b: np.ndarray) -> float:
@@ -126,7 +137,7 @@ def _brightness(
     return np.nan_to_num(found.min(axis=0), nan=0.0, posinf=0.0)
 
 
-def _between(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+def _interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values (P, Z) at `known`, increasing, brought to `at`: the less of both neighbours."""
     above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
     below = np.where(known[above] == at, above, np.maximum(above - 1, 0))

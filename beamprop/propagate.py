@@ -14,6 +14,7 @@ from . import judge, modes, spectral
 from .beam import Beam
 from .fan import Fan, single
 from .judge import Checks
+from .planes import cross, mixing
 from .scene import Scene
 from .spectral import BentPlan, Line, Reach
 from .transfers import Transfer, free, through
@@ -24,7 +25,7 @@ __all__ = [
     "beam_sum",
     "choose_line",
     "even_spacing",
-    "fill",
+    "fill_map",
     "free",
     "periodic_solution",
     "point_sum",
@@ -264,6 +265,99 @@ def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, o
             into[...] = spectral.direct_sum(line, h, a, b, x)
     else:
         out[...] = spectral.direct_sum(line, h, right, left, x)
+
+
+#: From how many planes and positions on most planes are made of a few; and the most that are looked at together.
+MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
+#: Among how many planes the few are looked for, and in each medium at least; how many they may be; and how many others are
+#: summed in each medium to see that it is so.
+SEARCHED, IN_EACH, MOST_ROWS, TRIED = 90, 40, 40, 5
+
+
+def fill_map(
+    s: Scene, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray, rtol: float
+) -> np.ndarray:
+    """p of all asked beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
+
+    Returns what the error of each beam, over the largest |p| of a plane, gains by planes that are made of others: (A,).
+    """
+    gained = np.zeros(out.shape[0])
+    for start in range(0, z.size, TOGETHER):
+        part = slice(start, start + TOGETHER)
+        more = None
+        if min(TOGETHER, z.size - start) >= MANY_PLANES and x.size >= MANY_POINTS:
+            more = _fill_from_few(s, fan, solution, transfer, z[part], x, out[:, part], rtol)
+        if more is None:
+            more = _fill_all(s, fan, solution, transfer, z[part], x, out[:, part])
+        gained = np.maximum(gained, more)
+    return gained
+
+
+def _fill_all(
+    s: Scene, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray
+) -> float:
+    """Every plane by itself, in blocks: of the response, and with many angles of the fields that are mixed."""
+    k = solution.line.k
+    row = max(1, k.size, 0 if fan.mix is None else fan.angles.size * x.size)
+    block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
+    for start in range(0, z.size, block):
+        rows = slice(start, start + block)
+        fill(s, fan, solution, transfer(k, z[rows]), x, out[:, rows])
+    return 0.0
+
+
+def _some_planes(s: Scene, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Planes, as indices of z, that are spread over each medium, and some that lie between them."""
+    faces = np.cumsum([0.0, *(values.periods * values.layers.thickness.sum() for values in s.segments)])
+    order = np.argsort(z, kind="stable")
+    parts = np.split(order, np.searchsorted(z[order], faces))
+    searched, tried = [], []
+    for part in parts:
+        if part.size:
+            count = min(part.size, max(IN_EACH, SEARCHED * part.size // z.size))
+            turn = (1 - np.cos(np.linspace(0, np.pi, count))) / 2  # denser at the faces, where what decays is seen
+            at = np.unique(((part.size - 1) * turn).round().astype(int))
+            between = (at[:-1] + at[1:]) // 2
+            between = np.setdiff1d(between, at)
+            searched.append(part[at])
+            tried.append(part[between[np.unique(np.linspace(0, between.size - 1, TRIED).astype(int))]] if between.size else [])
+    return np.concatenate(searched), np.concatenate(tried).astype(int)
+
+
+def _fill_from_few(
+    s: Scene, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray, rtol: float
+) -> np.ndarray | None:
+    """Planes made of a few, found among some with all plane waves; None where that is not good enough.
+
+    That is seen on others, between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
+    """
+    k, x0 = solution.line.k, x - fan.beam.centre
+    right, left = judge.amplitudes(s, fan, solution.line)
+    strength = np.max(np.abs(right) + np.abs(left), axis=0)
+    searched, tried = _some_planes(s, z)
+    if 2 * searched.size > z.size:
+        return None
+    h = transfer(k, z[np.concatenate([searched, tried])])
+    weighted = h[: searched.size] * strength
+    size = np.linalg.norm(weighted, axis=1)
+    if not np.all(size > judge.DARK):
+        return None
+    growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(x0)))
+    weighted /= size[:, None]
+    found = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
+    if found is None:
+        return None
+    rows, columns = found
+    mix = mixing(transfer(k[columns], z), h[rows][:, columns])
+    summed = np.empty((out.shape[0], rows.size + tried.size, x.size), complex)
+    fill(s, fan, solution, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
+    error = np.empty(out.shape[0])
+    for one, into, i in zip(summed, out, range(error.size), strict=True):
+        np.matmul(mix, one[: rows.size], out=into)
+        scale = np.max(np.abs(one[rows.size :]), axis=1)
+        apart = np.max(np.abs(into[tried] - one[rows.size :]), axis=1)
+        error[i] = 2 * np.max(apart / np.where(scale > judge.DARK, scale, np.inf))
+    return error if np.max(error) <= 0.1 * rtol else None  # a nan is not
 
 
 def periodic_solution(s: Scene, fan: Fan, x: np.ndarray, period: float) -> Solution:

@@ -48,6 +48,7 @@ class FieldMap:
         self.dims, self.pick = checks.dims(**self.axes)
         self.shape = tuple(v.size for v in (self.frequency, self.angles, self.z, self.x))
         self.errors = np.full(self.shape[:2], np.nan)
+        self._chosen = -1
         self._scene: Scene
         self._fan: Fan
         self._solution: propagate.Solution
@@ -62,18 +63,17 @@ class FieldMap:
             self.errors[i] = solution.error
         else:
             solution = propagate.periodic_solution(s, beams, self.x, self.period)
-        self._scene, self._fan, self._solution = s, beams, solution
+        self._chosen, self._scene, self._fan, self._solution = i, s, beams, solution
 
     def fill(self, planes: slice, angles: slice, out: np.ndarray) -> None:
         """p of the chosen frequency into out (A, Z, X), whose (Z, X) is contiguous, at some planes and angles."""
-        s, line = self._scene, self._solution.line
+        s = self._scene
         transfer, part, z = propagate.through(s, self.beam.z0), self._fan.part(angles), self.z[planes]
-        # the response, and with many angles the fields that are mixed
-        row = max(1, line.k.size, 0 if part.mix is None else part.angles.size * self.x.size)
-        block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
-        for start in range(0, z.size, block):
-            rows = slice(start, start + block)
-            propagate.fill(s, part, self._solution, transfer(line.k, z[rows]), self.x, out[:, rows])
+        more = propagate.fill_map(s, part, self._solution, transfer, z, self.x, out, self.rtol)
+        if self.period is None:
+            self.errors[self._chosen, angles] = np.maximum(
+                self.errors[self._chosen, angles], self._solution.error[angles] + more
+            )
         with np.errstate(over="ignore", invalid="ignore"):
             surely = np.isfinite(out.sum())  # then no term is not finite
         if not surely and not np.all(np.isfinite(out)):

@@ -64,10 +64,32 @@ def _fill_single(
     omega2, kx2 = omega * omega, kx * kx
     for j, here in _by_layer(places):
         face = station.faces[j]
-        A, B, f = one_layer(station.values.layers, j, omega2, kx2, places.share[here][:, None])
         scale = np.exp(face.log[0] - near_log) * per_incident
+        A, B, _ = one_layer(station.values.layers, j, omega2, kx2) if here.size >= MANY else (None, None, None)
+        if A is not None and (w := _steady(A * B)) is not None:
+            out[rows[here]] = _two_waves(w, A, face, scale, places.share[here])
+            continue
+        A, B, f = one_layer(station.values.layers, j, omega2, kx2, places.share[here][:, None])
         p, _, log = layer_back(State(face.p, face.q, np.zeros(1)), A, B, f)
         out[rows[here]] = p * scale if f.growth is None else p * np.exp(log + face.log - near_log) * per_incident
+
+
+def _steady(u: np.ndarray) -> np.ndarray | None:
+    """w = sqrt(u) (1, n) of a layer in which two waves can be told apart and neither overflows; or None."""
+    w = np.sqrt(u)
+    return w if float(np.min(np.abs(w))) > 0.05 and float(np.max(np.abs(w.imag))) < 300 else None
+
+
+def _two_waves(w: np.ndarray, A: np.ndarray, face: State, scale: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """p in a layer of phase w, at shares (Z,) of it in front of its far face: (Z, n)."""
+    # plain: p cos(w share) - A q share sin(w share)/(w share)
+    along = (0.5j * scale) * (A * face.q) / w
+    one, two = 0.5 * scale * face.p + along, 0.5 * scale * face.p - along
+    wave = np.exp(np.multiply.outer(1j * share, w[0]))
+    out = two[0] / wave
+    wave *= one[0]
+    out += wave
+    return out
 
 
 def _by_layer(places: Places) -> Iterator[tuple[int, np.ndarray]]:
@@ -102,16 +124,17 @@ def _fill_periodic(
         return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
     behind, which = _counts(periods - 1 - places.period)
     states, factors = _in_two_terms(m, b, far, behind, near_log, per_incident)
-    gathered = np.empty((ROWS, 2, kx.shape[1]), complex)
+    size = max(ROWS, BLOCK // (4 * kx.shape[1]))
+    gathered = np.empty((size, 2, kx.shape[1]), complex)
     for here, pressures in _back_through(layers, omega, kx, places, states):
-        for start in range(0, here.size, ROWS):  # blocks that stay in the cache
-            block = here[start : start + ROWS]
+        for start in range(0, here.size, size):  # blocks that stay in the cache
+            block = here[start : start + size]
             p = pressures(places.share[block])  # (Z, 2, n)
             p *= np.take(factors, which[block], axis=0, out=gathered[: block.size], mode="clip")
             out[rows[block]] = np.add(p[:, 0], p[:, 1], out=p[:, 0])
 
 
-#: Depths that are worked on at a time.
+#: The fewest depths that are worked on at a time.
 ROWS = 32
 
 
@@ -168,12 +191,20 @@ def _dense(counts: np.ndarray) -> bool:
     return counts.size >= TABLE and int(counts[-1] - counts[0]) == counts.size - 1 and counts.size % STEP == 0
 
 
+def _split(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Sorted counts as steps of the coarse table and of the fine one; None where tables do not pay."""
+    steps, rest = np.divmod(counts - counts[0], STEP)
+    return (steps, rest) if counts.size >= TABLE and 2 * (int(steps[-1]) + 1 + STEP) < counts.size else None
+
+
 def _expm1_table(y: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """expm1(counts y) for Re y <= 0: (len(counts), n)."""
-    if not _dense(counts):
+    # plain: expm1(counts y); expm1(a + b) = expm1(a) expm1(b) + expm1(a) + expm1(b)
+    if (split := _split(counts)) is None:
         return np.expm1(faded(np.multiply.outer(counts, y)))
-    one = np.expm1(faded(np.multiply.outer(counts[::STEP], y)))[:, None]
+    one = np.expm1(faded(np.multiply.outer(counts[0] + STEP * np.arange(split[0][-1] + 1), y)))
     two = np.expm1(faded(np.multiply.outer(np.arange(STEP), y)))
+    one, two = (one[:, None], two) if _dense(counts) else (one[split[0]], two[split[1]])
     out = one * two
     out += one
     out += two
@@ -182,11 +213,16 @@ def _expm1_table(y: np.ndarray, counts: np.ndarray) -> np.ndarray:
 
 def _exp_table(log: np.ndarray, y: np.ndarray, counts: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """exp(log + counts y) scale: (len(counts), n), 0 where the exponential is below 1e-282."""
-    if not _dense(counts) or float(np.max(np.abs(y.real))) * STEP > 300:  # a factor could overflow on its own
+    split = _split(counts)
+    if split is None or float(np.max(np.abs(y.real))) * STEP > 300:  # a factor could overflow on its own
         return np.exp(_faint(log + np.multiply.outer(counts, y))) * scale
-    coarse = np.exp(_faint(log + np.multiply.outer(counts[::STEP], y))) * scale
-    fine = np.exp(np.multiply.outer(np.arange(STEP), y))
-    return (coarse[:, None] * fine).reshape(counts.size, -1)
+    one = np.exp(_faint(log + np.multiply.outer(counts[0] + STEP * np.arange(split[0][-1] + 1), y))) * scale
+    two = np.exp(np.multiply.outer(np.arange(STEP), y))
+    if _dense(counts):
+        return (one[:, None] * two).reshape(counts.size, -1)
+    out = one[split[0]]
+    out *= two[split[1]]
+    return out
 
 
 def _faint(exponent: np.ndarray) -> np.ndarray:
