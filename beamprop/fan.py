@@ -40,7 +40,7 @@ class Fan(NamedTuple):
         """The beam at one angle."""
         return self.beam if angle == self.beam.angle else self.beam.at_angle(float(angle))
 
-    def part(self, asked: slice) -> Fan:
+    def taken(self, asked: slice | np.ndarray) -> Fan:
         """Some of the asked beams."""
         if self.mix is None:
             return self._replace(angles=self.angles[asked])

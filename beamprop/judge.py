@@ -30,6 +30,7 @@ class Checks(NamedTuple):
     """Where two lines are compared."""
 
     fan: Fan
+    k0: float
     transfer: Transfer
     x: np.ndarray
     z: np.ndarray
@@ -42,24 +43,30 @@ class Sampled(NamedTuple):
 
     line: Line
     h: np.ndarray
+    amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
 
 
 def check_points(
-    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float
+    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, beams: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach."""
+    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach.
+
+    Half as many positions for many beams, for each is then looked at through the others too.
+    """
+    picked, around = (31, 41) if beams < 20 else (17, 19)
     zs = np.sort(z)
     pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
     near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
     xs = np.sort(x)
-    xs = xs[np.unique(np.linspace(0, xs.size - 1, 31).round().astype(int))]
-    own = centre + source * np.linspace(-1, 1, 41)
+    xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
+    own = centre + source * np.linspace(-1, 1, around)
     return np.concatenate([xs, own]), np.unique([*pick, *near])
 
 
 def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
     """The response at the planes that are compared, `moved` in its last bits or not."""
-    return Sampled(line, checks.transfer(line.k, checks.z, SHIFT if moved else 0.0))
+    h = checks.transfer(line.k, checks.z, SHIFT if moved else 0.0)
+    return Sampled(line, h, amplitudes(checks.k0, checks.fan, line))
 
 
 class Survey(NamedTuple):
@@ -76,7 +83,7 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     asked = fan.asked
-    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 3).round().astype(int))]
     rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
     step = 1e-4 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
@@ -117,9 +124,7 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
 MOST_RAYS = 20_000
 
 
-def _brightness(
-    s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray
-) -> np.ndarray:
+def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
     """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
     x = x - fan.beam.centre
     path = float(z.max()) - fan.beam.z0 + s.thickness
@@ -130,7 +135,7 @@ def _brightness(
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
         line = spectral.propagating_line(s.k0, list(s.branches), int(more * count))
-        right, left = amplitudes(s, beams, line)
+        right, left = amplitudes(s.k0, beams, line)
         with np.errstate(invalid="ignore", over="ignore"):
             p = spectral.direct_sum(line, transfer(line.k, z), right, left, x)
             found[i] = np.max(np.abs(p), axis=2)
@@ -138,7 +143,7 @@ def _brightness(
 
 
 def _interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values (P, Z) at `known`, increasing, brought to `at`: the less of both neighbours."""
+    """Values (P, ...) at `known`, increasing, brought to `at`: the less of both neighbours'."""
     above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
     below = np.where(known[above] == at, above, np.maximum(above - 1, 0))
     return np.minimum(values[above], values[below])
@@ -156,12 +161,34 @@ def arriving_band(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> f
     return float(k[min(last + 1, k.size - 1)])
 
 
-def difference(s: Scene, checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
+#: Of more asked beams than this so many are judged, spread evenly over the angles; those between take the worse neighbour's error.
+JUDGED = 64
+
+
+def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
     """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what is the band's edge."""
+    asked = checks.fan.asked
+    if checks.fan.mix is None or asked.size <= JUDGED:
+        return _difference(checks, one, two)
+    some = np.argsort(asked)[np.linspace(0, asked.size - 1, JUDGED).round().astype(int)]
+    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some])
+    error, edge = _difference(part, one, two)
+    return -_interpolated(asked, asked[some], -error), edge
+
+
+def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
     fan = checks.fan
-    (right1, left1), (right2, left2) = amplitudes(s, fan, one.line), amplitudes(s, fan, two.line)
+    (right1, left1), (right2, left2) = one.amplitudes, two.amplitudes
     x = checks.x - fan.beam.centre
-    a = fan.mixed(np.asarray(spectral.direct_sum(one.line, one.h, right1, left1, x)))
+    # of asked angles that are mixed some are summed themselves too, in the same product
+    some = np.empty(0, int)
+    right, left = right1, left1
+    if fan.mix is not None:
+        some = np.unique(np.linspace(0, fan.asked.size - 1, 5).round().astype(int))
+        pairs = zip(one.amplitudes, amplitudes(checks.k0, Fan(fan.beam, fan.asked[some]), one.line), strict=True)
+        right, left = (np.concatenate(pair) for pair in pairs)
+    own = np.asarray(spectral.direct_sum(one.line, one.h, right, left, x))
+    a = fan.mixed(own[: fan.angles.size])
     b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
     largest = np.maximum(largest, checks.bright)
@@ -172,27 +199,21 @@ def difference(s: Scene, checks: Checks, one: Sampled, two: Sampled) -> tuple[np
         error = np.max(np.abs(a - b), axis=2) / scale
         if fan.beam.entire:
             mix = None if fan.mix is None else np.abs(fan.mix)
-            edge, cut = _beyond(two, right2, left2), _cut_off(s, fan, one, right1, left1, float(np.max(np.abs(x))))
+            edge, cut = (
+                _beyond(two, right2, left2),
+                _cut_off(checks.k0, fan, one, right1, left1, float(np.max(np.abs(x)))),
+            )
             edge, cut = (v if mix is None else mix @ v for v in (edge, cut))
             error += cut / scale
         if fan.mix is not None:
-            error += _mixing(s, fan, one, a, x) / scale
+            error += 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
     return np.maximum(worst, 4 * spectral.EPS), float(np.max(np.where(seen, edge / scale, 0.0)))
 
 
-def amplitudes(s: Scene, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
+def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
     """w S(k) and w S(-k) about the source's middle: (B, n) each."""
-    return spectral.amplitudes(line, lambda k: fan.spectra(k, s.k0), fan.beam.centre)
-
-
-def _mixing(s: Scene, fan: Fan, one: Sampled, mixed: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Error of fields mixed from those at the nodes, by plane: five of the asked angles, summed themselves; (Z,)."""
-    assert fan.mix is not None
-    some = np.unique(np.linspace(0, fan.asked.size - 1, 5).round().astype(int))
-    right, left = amplitudes(s, Fan(fan.beam, fan.asked[some]), one.line)
-    apart = spectral.direct_sum(one.line, one.h, right, left, x) - mixed[some]
-    return 3 * np.max(np.abs(apart), axis=(0, 2))
+    return spectral.amplitudes(line, lambda k: fan.spectra(k, k0), fan.beam.centre)
 
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
@@ -206,7 +227,7 @@ def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     return 2 * last * ratio / (1 - ratio)
 
 
-def _cut_off(s: Scene, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
+def _cut_off(k0: float, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
     """Size of what is missing where a spectrum ends inside a line (samples too coarse for their profile); (B, Z).
 
     |w S h e^{ikx}| at the last node, times the nodes that would fit between it and the real axis, where the cut is defined.
@@ -214,13 +235,13 @@ def _cut_off(s: Scene, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarr
     line = one.line
     missing = np.zeros((right.shape[0], one.h.shape[0]))
     for side, amplitude in ((1, right), (-1, left)):
-        beyond = fan.spectra(side * _after(line, line.k.size - 1), s.k0)
+        beyond = fan.spectra(side * _after(line, line.k.size - 1), k0)
         for i in np.flatnonzero((amplitude[:, -1] == 0) | ~beyond.any(axis=1)):
             used = np.flatnonzero(amplitude[i])
             if used.size < 2:
                 continue
             j = int(used[-1])
-            if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), s.k0).any():
+            if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), k0).any():
                 continue
             step, depth = max(abs(line.k[j] - line.k[j - 1]), 1e-300), abs(line.k[j].imag)
             missing[i] += (

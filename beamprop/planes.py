@@ -16,7 +16,8 @@ def cross(h: np.ndarray, tolerance: float, most: int) -> tuple[np.ndarray, np.nd
 
     Gaussian elimination with complete pivoting; h is overwritten. None where it takes more than `most` of them.
     """
-    rows, columns = [], []
+    rows: list[int] = []
+    columns: list[int] = []
     square, other = np.empty(h.shape), np.empty(h.shape)
     while True:
         np.square(h.real, out=square)
@@ -26,8 +27,8 @@ def cross(h: np.ndarray, tolerance: float, most: int) -> tuple[np.ndarray, np.nd
             return np.array(rows, int), np.array(columns, int)
         if len(rows) == most:
             return None
-        rows.append(i)
-        columns.append(j)
+        rows.append(int(i))
+        columns.append(int(j))
         h -= np.multiply.outer(h[:, j] / h[i, j], h[i])
 
 

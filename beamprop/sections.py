@@ -14,15 +14,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import modes, propagate, spectral
+from . import lines, modes, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
-from .propagate import Transfer
 from .response import solve
 from .scene import Scene, at_frequency
 from .spectral import Line, OpenPlan, Reach
-from .transfers import shifts
+from .transfers import Transfer, shifts
 from .widths import HALF_LEVEL, centroid, crossings, full_width
 
 #: h(kx) at one plane for each frequency: (F, n) -> (F, n).
@@ -306,7 +305,7 @@ def _measured_alone(
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
-        solution = propagate.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
+        solution = lines.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
         h = transfer(solution.line.k, planes)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
@@ -344,14 +343,14 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0,))
-        route = Route(alone, without(s, distance), propagate.free, distance, distance, False)
+        route = Route(alone, without(s, distance), transfers.free, distance, distance, False)
         found = measure(route, beam, rtol)
         return found.width, found.crossings, found.error
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
     face = np.full(s.k0.shape, s.thickness)
-    through = Route(s, far_face(s, beam.z0), lambda one: propagate.through(one, beam.z0), face, face - beam.z0, True)
+    through = Route(s, far_face(s, beam.z0), lambda one: transfers.through(one, beam.z0), face, face - beam.z0, True)
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
     widths, met, errors = zip(launch, near, (far.width, far.crossings, far.error), air, strict=True)

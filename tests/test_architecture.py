@@ -28,6 +28,8 @@ ORDER = [
     "fan",
     "transfers",
     "judge",
+    "planes",
+    "lines",
     "propagate",
     "sections",
     "datasets",
@@ -168,7 +170,7 @@ def test_one_branch_of_the_square_root():
 
 
 @pytest.mark.parametrize(
-    "module", ["conventions", "media", "homogenize", "response", "beam", "widths", "spectral", "propagate"]
+    "module", ["conventions", "media", "homogenize", "response", "beam", "widths", "spectral", "lines", "propagate"]
 )
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""

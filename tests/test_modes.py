@@ -136,7 +136,7 @@ def test_field_far_from_a_slab_with_backward_modes():
 
 def test_wrong_side_would_be_seen():
     """The circles are what puts a backward mode right: without them the field is far off."""
-    from beamprop import propagate
+    from beamprop import lines, propagate, transfers
     from beamprop.fan import single
     from beamprop.scene import scene
 
@@ -144,12 +144,10 @@ def test_wrong_side_would_be_seen():
     assert len(modes.between(s, 0.2 * K0, 5 * K0).wrong) == 1
     beam = bp.GaussianBeam(0.02)
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
-    transfer = propagate.through(s, 0.0)
+    transfer = transfers.through(s, 0.0)
     with_them, without = (
         propagate.point_sum(s, beam, line, transfer(line.k, z), x)
-        for line in (
-            propagate.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False)
-        )
+        for line in (lines.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False))
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 
@@ -328,17 +326,17 @@ def test_a_plain_beam_says_nothing():
 
 def test_crossings_alone_and_together():
     """Sampled on one window at once, and in a window that grows: the same number."""
-    from beamprop import propagate, sections
+    from beamprop import sections, transfers
     from beamprop.scene import at_frequency, scenes
 
     slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
     s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
     face = np.full(3, slab.thickness)
-    route = sections.Route(s, sections.far_face(s, 0.0), lambda one: propagate.through(one, 0.0), face, face, True)
+    route = sections.Route(s, sections.far_face(s, 0.0), lambda one: transfers.through(one, 0.0), face, face, True)
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = at_frequency(s, i)
-        alone = sections._measured_alone(one, beam, propagate.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        alone = sections._measured_alone(one, beam, transfers.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from .. import datasets, propagate, spectral, widths
+from .. import datasets, lines, propagate, spectral, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
 from ..fan import single
@@ -161,7 +161,7 @@ def _measure(
     half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
     for _ in range(7):
         x = beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
-        solution = propagate.choose_line(s, single(beam), transfer, x, plane, rtol)
+        solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
