@@ -230,9 +230,9 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
             if step < 1e-9 * scale and part.holds(k, 1e-9 * scale) and _is_new(k, found, 1e-9 * scale):
                 found += count * [k]
                 continue
-            if small:
-                if count > 1:  # a double zero is known to half the digits only, and Newton's steps end in rounding
-                    found += count * [k if part.holds(k, size) else middle]
+            if small:  # a double zero is known to half the digits only; boxes may have cut it in two
+                k = k if part.holds(k, size) else middle
+                found += count * [next((other for other in found if abs(k - other) < CLUSTER * abs(k)), k)]
                 continue
         for half in part.halves():
             inside = winding(f, half.outline(), 1e-9 * scale, most)
@@ -357,8 +357,10 @@ def between(s: Scene, depth: float, band: float) -> Between:
         found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
         if band > edge:
             found += _few_modes(s, Box(edge, band, -depth, above))
-        wrong = list(dict.fromkeys(m.kx for m in found if m.direction < 0))  # one circle around a cluster
-        return Between(tuple(wrong), tuple(_free_disc(s, k, [m.kx for m in found]) for k in wrong))
+        groups = _grouped([m.kx for m in found if m.direction < 0])
+        middles = tuple(sum(group) / len(group) for group in groups)
+        discs = (_free_disc(s, k, group, [m.kx for m in found]) for k, group in zip(middles, groups, strict=True))
+        return Between(middles, tuple(discs))
     except TooManyModes:
         return UNCLEAR
 
@@ -382,14 +384,28 @@ def _few_modes(s: Scene, box: Box) -> list[Mode]:
     return _told(s, found)
 
 
-def _free_disc(s: Scene, k: complex, others: list[complex]) -> float:
-    """Radius of a disc around a mode that holds no other mode, known or not, and no branch point."""
-    apart = [abs(k - other) for other in (*others, *s.branches) if abs(k - other) > 1e-9 * abs(k)]
-    radius = 0.4 * min(apart, default=abs(k))
+def _grouped(modes: list[complex]) -> list[list[complex]]:
+    """Modes that lie so near to each other that one circle goes around them all: a cluster is found to half the digits only."""
+    groups: list[list[complex]] = []
+    for k in modes:
+        near = [group for group in groups if abs(k - group[0]) < 10 * CLUSTER * abs(k)]
+        if near:
+            near[0].append(k)
+        else:
+            groups.append([k])
+    return groups
+
+
+def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]) -> float:
+    """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
+    radius = 0.4 * min((abs(k - other) for other in (*others, *s.branches) if other not in group), default=abs(k))
     f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
-    at_least = winding(f, k + 1e-6 * abs(k) * circle, 1e-12 * abs(k), MOST_VALUES)
-    while radius > 1e-6 * abs(k) and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
+    least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))
+    at_least = winding(f, k + least * circle, 1e-12 * abs(k), MOST_VALUES)
+    while radius > least and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
         radius /= 2
+    if len(group) > 1 and radius <= least:
+        raise TooManyModes
     return radius
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
+from beamprop import fan, judge, lines, scene, sections, spectral, transfers
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
@@ -77,6 +78,76 @@ def test_more_backward_modes_than_can_be_told_are_refused():
     case = accuracy.make_case(33)
     with pytest.raises(ValueError, match="backward waves"):
         bp.field(case.slab, case.beam, case.frequency, case.x, case.z, rtol=case.rtol)
+
+
+# --- what an error is relative to -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("medium", ["air", "lossless"])
+def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medium):
+    """A beam that lands far outside the window: the field there is small, and good enough for the plane.
+
+    Its largest |p| is found where the beam does land, to a factor of 3.
+    """
+    slab = bp.Slab.uniform(bp.AIR, 0.1) if medium == "air" else bp.Slab(bp.lmmd_cell(0.05, 0.0), 450)
+    beam = bp.GaussianBeam(0.7, 60.0, z0=-20.0)
+    x, far = np.linspace(-0.1, 0.1, 11), np.linspace(30, 40, 400)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        window = bp.field(slab, beam, F, x, slab.thickness)
+        truth = bp.field(slab, beam, F, np.concatenate([x, far]), slab.thickness, rtol=1e-10)
+    peak = float(np.abs(truth.p).max())
+    assert np.abs(truth.p[: x.size]).max() < 1e-6 * peak
+    allowed = 3 * float(window.error_estimate) + float(truth.error_estimate)
+    assert np.abs(window.p - truth.p[: x.size]).max() < min(1e-8, allowed) * peak
+    s = scene.scene(slab, F)
+    reach = spectral.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    planes = np.array([-20.0, slab.thickness])
+    found = judge.survey(s, fan.single(beam), transfers.through(s, beam.z0), x, planes, reach).bright[0, 1]
+    assert 0.3 * peak < found < 1.1 * peak
+
+
+def test_a_beam_that_lands_in_the_window_is_not_looked_for():
+    s = scene.scene(bp.Slab.uniform(bp.AIR, 0.1), F)
+    reach = spectral.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    planes, x = np.array([0.0, 0.1]), np.linspace(-1, 1, 11)
+    beam = bp.GaussianBeam(0.3, 30.0, z0=-1.0)
+    assert not judge.survey(s, fan.single(beam), transfers.through(s, beam.z0), x, planes, reach).bright.any()
+
+
+# --- work and what is asked -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("points", [41, 1024])
+@pytest.mark.parametrize("loss", [(0.05, 0.0), (0.05 + 0.05j, 0.025)])
+def test_lower_accuracy_is_cheaper(loss, points):
+    """Plane waves of the line that is chosen: fewer the larger rtol is."""
+    s = scene.scene(bp.Slab(bp.lmmd_cell(*loss), 450), F)
+    x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
+    sizes = []
+    for rtol in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
+        found = lines.choose_line(s, fan.single(bp.GaussianBeam(0.096, 30.0)), transfers.through(s, 0.0), x, z, rtol)
+        assert found.error[0] <= rtol
+        sizes.append(found.line.k.size)
+    assert sizes == sorted(sizes)
+    assert sizes[0] < 0.6 * sizes[-1]
+
+
+@pytest.mark.parametrize("ask", [bp.beam_width, bp.beam_measures])
+def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
+    """As `field` does: one category of warning, with the estimate."""
+    choose = lines.choose_line
+
+    def worse(*args):
+        solution = choose(*args)
+        return solution._replace(error=solution.error + 3e-4)
+
+    monkeypatch.setattr(lines, "choose_line", worse)
+    monkeypatch.setattr(
+        sections, "_measured", lambda first, *_: (sections.Measures(*5 * [np.zeros(1)]), np.zeros(1, bool))
+    )
+    with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-04 .* above the asked rtol 1\.0e-07"):
+        ask(bp.Slab(bp.lmmd_cell(), 20), bp.GaussianBeam(0.2), F, rtol=1e-7)
 
 
 # --- sources ----------------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import conventions, fan, products, response, scene, sections, spectral
+from beamprop import conventions, fan, judge, planes, products, propagate, response, scene, sections, spectral
 from beamprop.media import layer_values
 from beamprop.response import cells, inside, march
 from beamprop.response import layers as one
@@ -238,7 +238,8 @@ def test_periods_by_tables_against_the_closed_form(seed, lossless):
     m = cells.cell_matrix(layers, omega, kx)
     b = cells.bloch_phase(m)
     far = one.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
-    counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 4), 200))
+    # few, dense and sparse: without tables, by all products of two tables, by those that are asked for
+    counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 5), 400))
     two, factors = inside._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
     plain = cells.power_back(m, b, far, counts[:, None])
     scale = np.exp(plain.log)
@@ -259,6 +260,28 @@ def test_the_rest_of_a_layer_as_powers_of_the_share(seed):
             face = one.State(faces.p[i : i + 1], faces.q[i : i + 1], faces.log)
             wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
             close(found[:, i], np.array(wanted).astype(complex))
+
+
+@pytest.mark.parametrize("growth", [0.0, 3.0, 100.0])
+@pytest.mark.parametrize("phase", [0.06, 1.0, 50.0])
+def test_two_waves_in_a_thick_layer_are_the_entire_functions(phase, growth):
+    """Many depths in a thick layer are made of two exponentials; a state that grows on its way back stays exact."""
+    rng = np.random.default_rng(3)
+    w = (
+        phase * (1 + rng.random((1, 30))) + 1j * growth * (0.5 + rng.random((1, 30))) * (rng.random((1, 30)) < 0.7)
+    ).astype(complex)
+    A, share = 1.3 * (1 + rng.random()), rng.random(20)
+    p = rng.random(30) + 0.5 + 0j
+    face = one.State(p, 1j * w[0] / A * p * (1 + 0.1 * rng.random(30)), np.zeros(30))  # nearly outgoing
+    assert inside._steady(w * w) is not None
+    found = inside._two_waves(inside._steady(w * w), np.array([[A]]), face, np.ones(30), share)
+    v = w.astype(np.clongdouble) * share[:, None]
+    close(found, np.cos(v) * face.p - A * share[:, None] * np.sin(v) / v * face.q, axis=0)
+
+
+def test_layers_with_two_waves_that_cannot_be_told_or_overflow_are_left_to_others():
+    assert inside._steady(np.array([[1.0 + 0j, 1e-4]])) is None
+    assert inside._steady(np.array([[1.0 + 0j, -(400.0**2)]])) is None
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -443,6 +466,31 @@ def test_many_angles_are_mixed_from_a_few(name):
     close(found.mixed(found.spectra(kx, k0)), wanted, rtol=3e-12 * angles.size)
 
 
+@pytest.mark.parametrize("x", [[0.1], np.linspace(-1, 1, 101)])
+def test_many_angles_at_one_position_and_plane(x):
+    """What is summed there need not lie in one piece: one plane, one position."""
+    slab, angles = bp.Slab(bp.lmmd_cell(0.05, 0.0), 60), np.linspace(-60, 60, 50)
+    many = bp.field(slab, bp.GaussianBeam(0.096), 2500.0, x, 0.1, angle=angles)
+    one = bp.field(slab, bp.GaussianBeam(0.096, angles[7]), 2500.0, x, 0.1)
+    assert np.abs(many.p[7].values - one.p.values).max() < 1e-8
+
+
+@pytest.mark.parametrize("count", [65, 200])
+def test_errors_of_many_angles_are_judged_by_some(count, monkeypatch):
+    """No angle has a smaller error estimate than it has alone among all, but for the worse of its neighbours."""
+    slab, beam = bp.Slab(bp.lmmd_cell(0.05, 0.0), 60), bp.GaussianBeam(0.096)
+    x, z, angles = (
+        np.linspace(-1, 1, 51),
+        slab.thickness,
+        np.linspace(-85, 85, count)[np.random.default_rng(0).permutation(count)],
+    )
+    some = bp.field(slab, beam, 2500.0, x, z, angle=angles)
+    monkeypatch.setattr(judge, "JUDGED", 1000)
+    all_of_them = bp.field(slab, beam, 2500.0, x, z, angle=angles)
+    np.testing.assert_array_equal(some.p, all_of_them.p)
+    assert np.all(some.error_estimate > 0.5 * all_of_them.error_estimate)
+
+
 def test_the_field_at_many_angles_is_that_of_each():
     slab, beam = bp.Slab(bp.lmmd_cell(0.05, 0.0), 60), bp.GaussianBeam(0.096)
     x, z, angles = np.linspace(-1, 1, 101), [0.0, 0.05, slab.thickness], np.linspace(-85, 85, 90)
@@ -451,3 +499,89 @@ def test_the_field_at_many_angles_is_that_of_each():
         one = bp.field(slab, beam, 2500.0, x, z, angle=angles[i])
         apart = np.abs(one.p - many.p[i].drop_vars("angle")).max("x") / np.abs(one.p).max("x")
         assert apart.max() <= one.error_estimate + many.error_estimate[i].drop_vars("angle")
+
+
+# --- many planes ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rank", [1, 5, 17])
+def test_rows_of_low_rank_follow_from_a_few(rank):
+    """Singular values that fall by five a step, rows of very different size: as many rows as the tolerance asks."""
+    rng = np.random.default_rng(rank)
+
+    def unitary(n):
+        return np.linalg.qr(rng.normal(size=(n, rank)) + 1j * rng.normal(size=(n, rank)))[0]
+
+    h = (unitary(300) * 5.0 ** -np.arange(rank)) @ unitary(80).T
+    h *= np.exp(rng.uniform(-200, 200, (300, 1)))
+    size = np.linalg.norm(h, axis=1, keepdims=True)
+    rows, columns = planes.cross(h / size, 1e-14, 40)
+    assert rows.size <= rank + 1
+    mix = planes.mixing(h[:, columns], h[rows][:, columns])
+    np.testing.assert_allclose((mix @ (h[rows] / size[rows] * size[rows]) - h) / size, 0, atol=1e-12)
+    assert planes.cross(h / size, 1e-14, rank - 1) is None
+
+
+WATER = bp.Fluid.from_speed(1000.0, 1480.0)
+MANY_PLANES = {
+    "lossy": (bp.Slab(bp.lmmd_cell(), 450), 45.0, 0.0),
+    "lossless": (bp.Slab(bp.lmmd_cell(0.05, 0.0), 450), 85.0, -0.1),
+    "air": (bp.Slab.uniform(bp.AIR, 1.0), 30.0, 0.0),
+    "water behind": (bp.Slab(bp.lmmd_cell(), 100, after=WATER), 20.0, -0.05),
+    "stack": (
+        bp.Slab(bp.lmmd_cell(), 60) + bp.Slab.uniform(bp.Fluid(3.0, 2e5), 0.2) + bp.Slab(bp.lmmd_cell(0.3, 0.0), 40),
+        10.0,
+        0.0,
+    ),
+    "opaque": (bp.Slab(bp.lmmd_cell(0.05 + 0.5j, 0.25), 2000), 0.0, 0.0),
+    "backward": (bp.Slab.uniform(bp.Fluid(1.25 * -0.6, bp.AIR.bulk_modulus), 0.01), 45.0, -0.01),
+}
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8, 1e-10])
+@pytest.mark.parametrize("name", MANY_PLANES)
+def test_many_planes_are_made_of_a_few(name, rtol, monkeypatch):
+    """In front, inside and behind, the map is the one of every plane by itself, within what its error estimate gained."""
+    slab, angle, z0 = MANY_PLANES[name]
+    beam = bp.GaussianBeam(0.096, angle, z0=z0)
+    x, z = np.linspace(-1.2, 1.2, 200), np.linspace(z0, slab.thickness + 0.3, 500)
+    few = bp.field(slab, beam, 2500.0, x, z, rtol=rtol)
+    monkeypatch.setattr(propagate, "MANY_PLANES", 10**9)
+    alone = bp.field(slab, beam, 2500.0, x, z, rtol=rtol)
+    apart = np.abs(few.p - alone.p).max("x") / np.abs(alone.p).max("x")
+    assert apart.max() <= 0.1 * rtol
+    assert few.error_estimate <= max(rtol, float(alone.error_estimate) * 1.1)
+
+
+@pytest.mark.parametrize("name", ["lossy", "air", "water behind"])
+def test_a_map_sums_few_of_its_planes(name, monkeypatch):
+    """That it is worth it: less than a fifth of the planes are summed, and their order does not matter."""
+    slab, angle, z0 = MANY_PLANES[name]
+    beam = bp.GaussianBeam(0.096, angle, z0=z0)
+    x, z = np.linspace(-1.2, 1.2, 200), np.linspace(z0, slab.thickness + 0.3, 600)
+    count, fill = [], propagate.fill
+
+    def watched(s, beams, solution, h, *rest):
+        count.append(h.shape[0])
+        return fill(s, beams, solution, h, *rest)
+
+    monkeypatch.setattr(propagate, "fill", watched)
+    ordered = bp.field(slab, beam, 2500.0, x, z)
+    assert sum(count) < 120
+    shuffled = np.random.default_rng(0).permutation(z.size)
+    other = bp.field(slab, beam, 2500.0, x, z[shuffled])
+    apart = np.abs(other.p.values - ordered.p.values[shuffled]).max(axis=1) / np.abs(ordered.p.values[shuffled]).max(
+        axis=1
+    )
+    assert apart.max() < 3e-9
+
+
+def test_planes_that_do_not_follow_are_summed_themselves(monkeypatch):
+    """Where the few planes do not serve, the answer is that of every plane by itself."""
+    slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
+    x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
+    right = planes.mixing
+    monkeypatch.setattr(propagate, "mixing", lambda *given: right(*given) * (1 + 1e-6))
+    spoiled = bp.field(slab, beam, 2500.0, x, z)
+    monkeypatch.setattr(propagate, "MANY_PLANES", 10**9)
+    np.testing.assert_array_equal(spoiled.p, bp.field(slab, beam, 2500.0, x, z).p)

@@ -54,6 +54,39 @@ def test_loss_tells_forward_from_backward():
     np.testing.assert_allclose(lossy.kx.values.real, lossless.kx.values.real, rtol=1e-3)
 
 
+@pytest.mark.parametrize("loss", [0.0, 1e-3])
+@pytest.mark.parametrize("thickness", [0.13, 0.3])
+@pytest.mark.parametrize(("rho", "slowness", "direction"), [(-2.0, 3.0, 1), (-0.88, -4.5, -1)])
+def test_modes_of_two_faces_that_do_not_feel_each_other(rho, slowness, direction, thickness, loss):
+    """Each face of a negative density carries a wave, kappa + kappa_1/rho = 0; in a thick slab both are one zero, twice."""
+    r, s = rho + 1j * loss * abs(rho), slowness + 1j * loss * abs(slowness)
+    face = K0 * np.sqrt((1 - s / r) / (1 - 1 / r**2))
+    slab = bp.Slab.uniform(bp.Fluid(1.25 * r, BULK / s), thickness)
+    ds = bp.guided_modes(slab, F)
+    assert ds["count"] == ds.sizes["mode"]
+    near = np.abs(ds.kx.values - face) < 1e-5 * abs(face)
+    assert near.sum() == 2
+    assert np.all(ds.direction.values[near] == direction)
+
+
+def test_a_cluster_of_backward_modes_gets_one_circle():
+    """The field beside two backward modes that are one zero is the limit of small losses; the search misses neither."""
+    beam, x = bp.GaussianBeam(0.02, 20.0), np.linspace(-0.1, 0.1, 21)
+
+    def field(loss):
+        fluid = bp.Fluid(1.25 * (-0.88 + 0.88j * loss), BULK / (-4.5 + 4.5j * loss))
+        return bp.field(bp.Slab.uniform(fluid, 0.13), beam, F, x, [0.0, 0.05, 0.13, 0.2], rtol=1e-9).p
+
+    limit = field(0.0)
+    apart = [float(np.abs(field(loss) - limit).max() / np.abs(limit).max()) for loss in (1e-4, 1e-5, 1e-6)]
+    assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)
+    assert apart[1] / apart[2] == pytest.approx(10, rel=0.05)
+    s = scene.scene(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
+    found = modes.between(s, 0.3 * K0, 10 * K0)
+    assert len(found.wrong) == len(set(found.wrong))
+    assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.wrong)
+
+
 def test_frequencies_are_padded():
     """Fewer modes at one frequency than at another: nan, direction 0."""
     slab = bp.Slab.uniform(bp.Fluid(5 * 1.25, BULK), 0.1)
