@@ -23,6 +23,7 @@ class Fan(NamedTuple):
     angles: np.ndarray  #: (B,) degree
     mix: np.ndarray | None = None
     mixed_angles: np.ndarray | None = None  #: (A,) degree, those that `mix` makes
+    tolerance: float = 0.0  #: of the mixing
 
     @property
     def asked(self) -> np.ndarray:
@@ -77,7 +78,7 @@ def fan(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> Fan:
         if count < 0.6 * angles.size:
             turn = np.pi * (np.arange(count) + 0.5) / count
             nodes = middle + half * np.cos(turn)
-            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles)
+            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles, tolerance)
     return Fan(beam, angles)
 
 

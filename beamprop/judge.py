@@ -47,13 +47,13 @@ class Sampled(NamedTuple):
 
 
 def check_points(
-    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, beams: int = 1
+    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, many: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
     """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach.
 
-    Half as many positions for many beams, for each is then looked at through the others too.
+    Half as many positions for `many` mixed beams, each of which is looked at through the others too.
     """
-    picked, around = (31, 41) if beams < 20 else (17, 19)
+    picked, around = (17, 19) if many else (31, 41)
     zs = np.sort(z)
     pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
     near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
@@ -206,7 +206,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
             edge, cut = (v if mix is None else mix @ v for v in (edge, cut))
             error += cut / scale
         if fan.mix is not None:
-            error += 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
+            error += fan.tolerance + 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
     return np.maximum(worst, 4 * spectral.EPS), float(np.max(np.where(seen, edge / scale, 0.0)))
 

@@ -82,7 +82,8 @@ def choose_line(
     by a second one. `guided` says whether the transfer knows guided modes (none without a slab).
     """
     reach = _reach(s, fan, x, z, rtol)
-    points, planes = judge.check_points(x, z, fan.beam.centre, reach.source, s.thickness, fan.angles.size)
+    many = fan.mix is not None and fan.asked.size > judge.JUDGED
+    points, planes = judge.check_points(x, z, fan.beam.centre, reach.source, s.thickness, many)
     noise, bright = judge.survey(s, fan, transfer, points, planes, reach)
     checks = Checks(fan, s.k0, transfer, points, planes, guided, bright)
     if not fan.beam.entire:

@@ -70,6 +70,10 @@ def free(s: Scene) -> Transfer:
     return transfer
 
 
+#: Below this a ratio of two numbers may overflow.
+FAINT = 1e-250
+
+
 def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
     """How far plane waves are carried along x, by stationary phase: the least and the most of the strong ones along the last axis.
 
@@ -77,7 +81,7 @@ def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np
     """
     twice = low + high
     size = np.abs(twice)
-    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > 0)
+    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > FAINT)
     slope = np.imag((high - low) / np.where(strong, step * twice, 1.0))
     shift = np.where(strong, -slope, 0.0)
     least, most = shift.min(-1, where=strong, initial=np.inf), shift.max(-1, where=strong, initial=-np.inf)

@@ -706,12 +706,12 @@ def truth(case: Case, own: np.ndarray) -> Truth | str:
 
 
 def fan_of(number: int, case: Case) -> np.ndarray | None:
-    """For one case in seven: 40 angles among which its own is asked for."""
+    """For one case in seven: 40 or 150 angles among which its own is asked for."""
     if number % 7 or getattr(case.beam, "form", "launch") == "rotated":
         return None
     rng = np.random.default_rng([SEED, number, 1])
-    angles = rng.uniform(-89, 89, 40)
-    angles[rng.integers(40)] = case.beam.angle
+    angles = rng.uniform(-89, 89, int(rng.choice([40, 150])))
+    angles[rng.integers(angles.size)] = case.beam.angle
     return angles
 
 
@@ -830,7 +830,7 @@ def class_table(ds: xr.Dataset) -> str:
     ]
     v = verdicts(ds)
     groups = [(k, ds.kind.values == k) for k in SLABS] + [(k, ds.source.values == k) for k in SOURCES]
-    groups.append(("one of 40 angles", ds.fan.values.astype(bool)))
+    groups.append(("one of 40 or 150 angles", ds.fan.values.astype(bool)))
     for name, rows in [*groups, ("all", np.ones(ds.sizes["case"], bool))]:
         if not rows.any():
             continue

@@ -9,6 +9,7 @@ import sys
 import tracemalloc
 from pathlib import Path
 
+import _one_thread  # noqa: F401
 import limits
 import numpy as np
 import scaling

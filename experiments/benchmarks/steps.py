@@ -1,0 +1,160 @@
+"""Where the time goes, by stage, and what each step buys: the same question with the step and with it switched off, in turn."""
+
+from __future__ import annotations
+
+import contextlib
+import cProfile
+import pstats
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import _one_thread  # noqa: F401
+import numpy as np
+from run import BEAM, FREQUENCY, SLAB, grids
+from timing import amount, measure
+
+import beamprop as bp
+from beamprop import fan, lines, propagate
+from beamprop.questions import maps
+from beamprop.response import cells, inside
+
+Work = Callable[[], object]
+X, Z = grids()
+ANGLES, FREQUENCIES = np.linspace(-80, 80, 1000), np.linspace(2000, 3000, 101)
+
+
+def field_map(slab: bp.Slab = SLAB) -> object:
+    """The map of the first row of the table."""
+    return bp.field(slab, BEAM.at_angle(45.0), FREQUENCY, X, Z)
+
+
+def angles() -> object:
+    """Many angles at one plane."""
+    return bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES)
+
+
+def widths() -> object:
+    """Widths against frequency."""
+    return bp.beam_width(SLAB, BEAM, FREQUENCIES)
+
+
+def air() -> object:
+    """The map without a slab."""
+    return field_map(bp.Slab.uniform(bp.AIR, SLAB.thickness))
+
+
+# --- where the time goes ----------------------------------------------------------------------------------
+
+#: Function by which a stage is known in a profile: (file's name, function's name).
+STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
+    "`field`, 1000 z × 1024 x": (
+        field_map,
+        {
+            "the choice of a line and its judgement": ("lines.py", "choose_line"),
+            "of it: modes on the wrong side": ("modes.py", "between"),
+            "of it: two lines compared": ("judge.py", "difference"),
+            "all planes, made of a few": ("propagate.py", "fill_map"),
+            "of it: the response": ("transfers.py", "factors"),
+            "of it: which planes stand for all": ("planes.py", "cross"),
+            "of it: those planes summed": ("propagate.py", "fill"),
+            "labels, provenance": ("maps.py", "dataset"),
+        },
+    ),
+    "1000 angles, exit plane": (
+        angles,
+        {
+            "the choice of a line and its judgement": ("lines.py", "choose_line"),
+            "fields at the nodes": ("spectral.py", "fft_sum"),
+            "all angles mixed from them": ("fan.py", "mixed"),
+            "labels, provenance": ("maps.py", "dataset"),
+        },
+    ),
+    "`beam_width`, 101 frequencies": (
+        widths,
+        {
+            "windows, by stationary phase": ("sections.py", "landing"),
+            "modes on the wrong side": ("sections.py", "_backward"),
+            "lines and their response": ("sections.py", "_both_modes"),
+            "samples, peak, edges": ("sections.py", "_measured"),
+        },
+    ),
+}
+
+
+def shares(work: Work, stages: dict[str, tuple[str, str]], runs: int = 20) -> dict[str, float]:
+    """Share of a work's time that is spent in each stage and below."""
+    work()
+    profile = cProfile.Profile()
+    profile.enable()
+    for _ in range(runs):
+        work()
+    profile.disable()
+    stats: Any = pstats.Stats(profile)
+    spent = {}
+    for stage, (file, function) in stages.items():
+        rows = [v for (path, _, name), v in stats.stats.items() if path.endswith(file) and name == function]
+        spent[stage] = sum(v[3] for v in rows) / stats.total_tt
+    return spent
+
+
+# --- what each step buys ----------------------------------------------------------------------------------
+
+
+class Step(NamedTuple):
+    """A step, the work that shows it, and what to put in whose place to be without."""
+
+    name: str
+    work: Work
+    where: Any
+    what: str
+    without: Any
+
+
+STEPS = [
+    Step("planes made of a few: 450 periods", field_map, propagate, "MANY_PLANES", 10**9),
+    Step("planes made of a few: air", air, propagate, "MANY_PLANES", 10**9),
+    Step("angles mixed from a few nodes", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), maps, "fan", lambda beam, at, *_: fan.Fan(beam, at)),
+    Step("straight lines and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), lines, "fft_is_cheaper", lambda *_: False),
+    Step("cells as polynomials in kx², 101 frequencies", widths, cells, "_fitted", lambda *_: None),
+    Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), inside, "TABLE", 10**9),
+    Step("two waves in a thick layer", air, inside, "_steady", lambda u: None),
+]  # fmt: skip
+
+
+@contextlib.contextmanager
+def switched_off(step: Step) -> Iterator[None]:
+    """Without the step, for a while."""
+    kept = getattr(step.where, step.what)
+    setattr(step.where, step.what, step.without)
+    try:
+        yield
+    finally:
+        setattr(step.where, step.what, kept)
+
+
+def compare(step: Step, repeats: int) -> tuple[float, float]:
+    """Median times without and with the step, in turn."""
+
+    def without() -> object:
+        with switched_off(step):
+            return step.work()
+
+    before, after = measure(without, step.work, repeats=repeats)
+    return before, after
+
+
+def main(repeats: int = 9) -> None:
+    """Print both tables."""
+    for title, (work, stages) in STAGES.items():
+        print(f"| {title} | share |\n|---|---|")
+        for stage, share in shares(work, stages).items():
+            print(f"| {stage} | {share:.2f} |")
+        print()
+    print("| step | without | with | |\n|---|---|---|---|")
+    for step in STEPS:
+        before, after = compare(step, repeats)
+        print(f"| {step.name} | {amount(before, 's')} | {amount(after, 's')} | {before / after:.1f} × |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
