@@ -613,9 +613,9 @@ def _sum(
 
 
 def brightness(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
-    """|p| of the propagating waves where the beam's middle lands on each plane: errors are over the largest |p| of a plane, (Z,).
+    """|p| of the propagating waves where the beam lands on each plane: errors are over the largest |p| of a plane, (Z,).
 
-    The ray of the strongest plane wave, and panels over the strong part of the spectrum; 0 where that takes too many.
+    Rays of nine strong plane waves, and panels over the strong part of the spectrum; rays that go too far are left out.
     """
     wide, tilt = source.band(1e-3) - m.k0 * abs(source.sine), m.k0 * source.sine
     lo, hi = max(tilt - wide, -0.995 * m.k0), min(tilt + wide, 0.995 * m.k0)
@@ -625,16 +625,17 @@ def brightness(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     def h(k: np.ndarray) -> np.ndarray:
         return m.response(np.abs(k) + 0j, z, source.beam.z0)  # even in k
 
-    middle, step = float(np.clip(tilt, 0.9 * lo, 0.9 * hi)), 1e-5 * m.k0
-    steps = np.angle(h(np.array([middle + step])) / h(np.array([middle - step])))[:, 0]
-    x = np.nan_to_num(-steps / (2 * step))
+    rays, step = np.linspace(0.95 * lo + 0.05 * hi, 0.05 * lo + 0.95 * hi, 9), 1e-5 * m.k0
+    x = np.nan_to_num(-np.angle(h(rays + step) / h(rays - step)) / (2 * step))  # (Z, 9)
+    most = 4 * 800 / (hi - lo) - source.beam.reach(1e-3) - m.thickness
+    x = np.where(np.abs(x) < most, x, 0.0)
     count = math.ceil(3 + (hi - lo) * (np.abs(x).max() + source.beam.reach(1e-3) + m.thickness) / 4)
     if count > 1500:
         return np.zeros(z.size)
     k, w = _panels(np.linspace(lo, hi, count))
-    kz = np.sqrt((m.k0 - k) * (m.k0 + k))
-    p = np.sum(h(k) * source(k, kz) * w * np.exp(1j * np.outer(x, k)), axis=1) / (2 * np.pi)
-    return np.nan_to_num(np.abs(p))
+    sent = h(k) * source(k, np.sqrt((m.k0 - k) * (m.k0 + k))) * w / (2 * np.pi)
+    p = [np.exp(1j * np.outer(there, k)) @ row for there, row in zip(x, sent, strict=True)]
+    return np.nan_to_num(np.abs(p).max(axis=1))
 
 
 class Truth(NamedTuple):
