@@ -151,9 +151,10 @@ def _fill_from_few(
     if 2 * searched.size > z.size:
         return None
     h = transfer(k, z[np.concatenate([searched, tried])])
-    weighted = h[: searched.size] * strength
-    size = np.linalg.norm(weighted, axis=1)
-    if not np.all(size > judge.DARK):
+    with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode
+        weighted = h[: searched.size] * strength
+        size = np.linalg.norm(weighted, axis=1)
+    if not np.all((size > judge.DARK) & np.isfinite(size)):
         return None
     growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(x0)))
     weighted /= size[:, None]

@@ -46,7 +46,7 @@ def field(
     period : float, m
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
-        Asked error of the open field over the largest |p| of each plane.
+        Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
     progress : function
         Wraps the list of frequencies that is worked through (``tqdm.tqdm``, say).
 
@@ -54,7 +54,8 @@ def field(
     -------
     Dataset
         `p` on (frequency, angle, z, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
-        open fields: the largest difference between two contours of integration that share no error term.
+        open fields: the largest difference between two contours of integration that share no error term, and what planes
+        gain that are made of others.
 
     Warns
     -----
