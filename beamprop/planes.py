@@ -8,28 +8,41 @@ The fields on those few planes are summed, all others are combinations of them.
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 
 
-def cross(h: np.ndarray, tolerance: float, most: int) -> tuple[np.ndarray, np.ndarray] | None:
-    """Rows and columns of h (Z, n), whose rows have norm 1, from which every entry follows to `tolerance`: (r,) each.
+class Cross(NamedTuple):
+    """Rows and columns of a matrix, by falling size of their pivots; (r,) each."""
 
-    Gaussian elimination with complete pivoting; h is overwritten. None where it takes more than `most` of them.
+    rows: np.ndarray
+    columns: np.ndarray
+    pivots: np.ndarray
+
+    def within(self, tolerance: float) -> int:
+        """How many of them leave no pivot above a tolerance: all, where the last one is above it."""
+        return int(np.count_nonzero(self.pivots > tolerance))
+
+
+def cross(h: np.ndarray, tolerance: float, most: int) -> Cross:
+    """The rows and columns of h (Z, n), whose rows have norm 1, from which every entry follows to `tolerance`, or `most` of them.
+
+    Gaussian elimination with complete pivoting; h is overwritten.
     """
-    rows: list[int] = []
-    columns: list[int] = []
+    rows, columns, pivots = np.empty(most, int), np.empty(most, int), np.empty(most)
     square, other = np.empty(h.shape), np.empty(h.shape)
-    while True:
+    for r in range(most):
         np.square(h.real, out=square)
         square += np.square(h.imag, out=other)
-        i, j = np.unravel_index(int(np.argmax(square)), square.shape)
-        if square[i, j] <= tolerance * tolerance:
-            return np.array(rows, int), np.array(columns, int)
-        if len(rows) == most:
-            return None
-        rows.append(int(i))
-        columns.append(int(j))
+        i, j = divmod(int(np.argmax(square)), h.shape[1])
+        size = math.sqrt(square[i, j])
+        if not size > tolerance:
+            return Cross(rows[:r], columns[:r], pivots[:r])
+        rows[r], columns[r], pivots[r] = i, j, size
         h -= np.multiply.outer(h[:, j] / h[i, j], h[i])
+    return Cross(rows, columns, pivots)
 
 
 def mixing(h: np.ndarray, few: np.ndarray) -> np.ndarray:

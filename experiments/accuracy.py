@@ -716,6 +716,16 @@ def fan_of(number: int, case: Case) -> np.ndarray | None:
     return angles
 
 
+def map_of(number: int, case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """x and z that are asked for; for one case in five a map of many planes and positions, the case's own among them."""
+    if number % 5 != 1 or number % 7 == 0:
+        return case.x, case.z
+    rng = np.random.default_rng([SEED, number, 2])
+    half = max(np.ptp(case.x) / 2, case.beam.reach(0.5))
+    x = case.x.mean() + half * np.linspace(-1, 1, 80)
+    return np.union1d(case.x, x), np.union1d(case.z, rng.uniform(case.z.min(), case.z.max(), 250))
+
+
 #: How a refusal begins: the argument that it names, and why.
 REFUSALS = ("slab: it guides more backward waves", "rtol: ")
 
@@ -724,16 +734,17 @@ def judge(number: int) -> dict[str, Any]:
     """One case: the package's answer, its promise, and the truth."""
     case = make_case(number)
     angles = fan_of(number, case)
+    x, z = map_of(number, case)
     row: dict[str, Any] = {
         "number": number, "kind": case.kind, "source": case.source, "rtol": case.rtol, "error": np.nan, "estimate": np.nan,
         "truth_error": np.nan, "seconds": np.nan, "warned": False, "status": "answered", "reason": "", "wrong": 0,
-        "fan": angles is not None,
+        "fan": angles is not None, "map": z.size > case.z.size,
     }  # fmt: skip
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            ds = bp.field(case.slab, case.beam, case.frequency, case.x, case.z, angle=angles, rtol=case.rtol)
+            ds = bp.field(case.slab, case.beam, case.frequency, x, z, angle=angles, rtol=case.rtol)
             ds = ds if angles is None else ds.isel(angle=int(np.flatnonzero(angles == case.beam.angle)[0]))
         except ValueError as error:  # refused, if it names what asks too much; any other is a fault of the package
             status = "refused" if str(error).startswith(REFUSALS) else "crashed"
@@ -756,7 +767,7 @@ def judge(number: int) -> dict[str, Any]:
         found = truth(case._replace(x=case.x[some]), own)
     if isinstance(found, str):
         return row | {"status": "no truth", "reason": row["reason"] or found}
-    p = ds.p.values.reshape(case.z.size, case.x.size)[:, some]
+    p = ds.p.values.reshape(z.size, x.size)[np.searchsorted(z, case.z)][:, np.searchsorted(x, case.x)][:, some]
     scale = np.where(found.scale > 1e-280, found.scale, np.inf)
     error = float(np.max(np.abs(p - found.p).max(axis=1) / scale))
     return row | {"error": error, "truth_error": found.error, "wrong": found.wrong}
@@ -832,6 +843,7 @@ def class_table(ds: xr.Dataset) -> str:
     v = verdicts(ds)
     groups = [(k, ds.kind.values == k) for k in SLABS] + [(k, ds.source.values == k) for k in SOURCES]
     groups.append(("one of 40 or 150 angles", ds.fan.values.astype(bool)))
+    groups.append(("in a map of 250 planes and more", ds.map.values.astype(bool)))
     for name, rows in [*groups, ("all", np.ones(ds.sizes["case"], bool))]:
         if not rows.any():
             continue

@@ -515,11 +515,12 @@ def test_rows_of_low_rank_follow_from_a_few(rank):
     h = (unitary(300) * 5.0 ** -np.arange(rank)) @ unitary(80).T
     h *= np.exp(rng.uniform(-200, 200, (300, 1)))
     size = np.linalg.norm(h, axis=1, keepdims=True)
-    rows, columns = planes.cross(h / size, 1e-14, 40)
+    rows, columns, pivots = planes.cross(h / size, 1e-14, 40)
     assert rows.size <= rank + 1
+    assert np.all(np.diff(pivots) < 1e-12)
     mix = planes.mixing(h[:, columns], h[rows][:, columns])
     np.testing.assert_allclose((mix @ (h[rows] / size[rows] * size[rows]) - h) / size, 0, atol=1e-12)
-    assert planes.cross(h / size, 1e-14, rank - 1) is None
+    assert planes.cross(h / size, 1e-14, rank - 1).rows.size == rank - 1
 
 
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
