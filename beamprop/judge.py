@@ -208,7 +208,9 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
         if fan.mix is not None:
             error += fan.tolerance + 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
-    return np.maximum(worst, 4 * spectral.EPS), float(np.max(np.where(seen, edge / scale, 0.0)))
+    # both lines round the phases k x and kz z alike
+    way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
+    return worst + spectral.EPS * (4 + 2 * checks.k0 * way), float(np.max(np.where(seen, edge / scale, 0.0)))
 
 
 def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
