@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, modes, response
+from .. import datasets, modes, response, roots
 from ..conventions import outgoing_kz
 from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
 from ..scene import scene
@@ -203,7 +203,7 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
         )
-    found, total = modes.find_modes(s, modes.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+    found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
     if len(found) != total:
         raise ValueError(
             f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(found)} found; "
