@@ -69,6 +69,17 @@ def test_modes_of_two_faces_that_do_not_feel_each_other(rho, slowness, direction
     assert np.all(ds.direction.values[near] == direction)
 
 
+def test_a_cluster_whose_direction_cannot_be_told_is_refused(monkeypatch):
+    """By name, as every refusal is."""
+
+    def undecided(*_):
+        raise roots.TooManyModes
+
+    monkeypatch.setattr(modes, "_direction", undecided)
+    with pytest.raises(ValueError, match="slab: two of its modes"):
+        bp.guided_modes(thin(-2.0, 0.3), F)
+
+
 def test_a_cluster_of_backward_modes_gets_one_circle():
     """The field beside two backward modes that are one zero is the limit of small losses; the search misses neither."""
     beam, x = bp.GaussianBeam(0.02, 20.0), np.linspace(-0.1, 0.1, 21)

@@ -203,7 +203,12 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
         )
-    found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+    try:
+        found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+    except roots.TooManyModes:
+        raise ValueError(
+            f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"
+        ) from None
     if len(found) != total:
         raise ValueError(
             f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(found)} found; "
