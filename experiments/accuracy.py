@@ -743,7 +743,7 @@ def judge(number: int) -> dict[str, Any]:
     row: dict[str, Any] = {
         "number": number, "kind": case.kind, "source": case.source, "rtol": case.rtol, "error": np.nan, "estimate": np.nan,
         "truth_error": np.nan, "seconds": np.nan, "warned": False, "status": "answered", "reason": "", "wrong": 0,
-        "fan": angles is not None, "map": z.size > case.z.size,
+        "fan": angles is not None, "many_planes": z.size > case.z.size,
     }  # fmt: skip
     start = time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
@@ -848,7 +848,7 @@ def class_table(ds: xr.Dataset) -> str:
     v = verdicts(ds)
     groups = [(k, ds.kind.values == k) for k in SLABS] + [(k, ds.source.values == k) for k in SOURCES]
     groups.append(("one of 40 or 150 angles", ds.fan.values.astype(bool)))
-    groups.append(("in a map of 250 planes and more", ds.map.values.astype(bool)))
+    groups.append(("in a map of 250 planes and more", ds.many_planes.values.astype(bool)))
     for name, rows in [*groups, ("all", np.ones(ds.sizes["case"], bool))]:
         if not rows.any():
             continue
