@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 from typing import Any
 
@@ -58,7 +59,7 @@ print(np.median(times[1:]), np.ravel(found[[k for k in found if k.startswith("T"
 
 
 def navette(
-    python: str, slab: bp.Slab, frequency: float, sine: np.ndarray, folder: Any, repeats: int
+    python: str, slab: bp.Slab, frequency: float, sine: np.ndarray, folder: Any, repeats: int, threads: int = 1
 ) -> tuple[float, float]:
     """Time and transmittance of navette on the same slab: p-polarised light, n^2 the relative density."""
     background = complex(slab.before.density)
@@ -72,7 +73,11 @@ def navette(
         sine=sine,
     )
     out = subprocess.run(
-        [python, "-c", NAVETTE, str(path), str(repeats)], check=True, capture_output=True, text=True
+        [python, "-c", NAVETTE, str(path), str(repeats)],
+        check=True,
+        capture_output=True,
+        text=True,
+        env=os.environ | {"RAYON_NUM_THREADS": str(threads)},
     ).stdout
     seconds, transmittance = (float(v) for v in out.split())
     return seconds, transmittance
