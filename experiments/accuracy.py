@@ -868,7 +868,7 @@ def reasons(ds: xr.Dataset) -> str:
     """Why cases were refused, crashed, or had no truth, counted."""
     lines = ["| status | reason | cases |", "|---|---|---|"]
     keys = [
-        (s, "".join("#" if c.isdigit() else c for c in r.split(":")[0] + ":" + r.split(":", 1)[-1][:60]))
+        (s, "".join("#" if c.isdigit() else c for c in r))
         for s, r in zip(ds.status.values, ds.reason.values, strict=True)
         if r
     ]
