@@ -85,7 +85,7 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     asked = fan.asked
     some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 3).round().astype(int))]
     rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
-    step = 1e-4 * s.k0
+    step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
     h = transfer(np.concatenate([k, k * (1 + SHIFT), beside]), ends)
@@ -121,7 +121,7 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
 
 
 #: The most nodes over the propagating waves by which a beam is looked for where it lands.
-MOST_RAYS = 20_000
+MOST_RAYS = 40_000
 
 
 def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -210,7 +210,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
     # both lines round the phases k x and kz z alike
     way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
-    return worst + spectral.EPS * (4 + 2 * checks.k0 * way), float(np.max(np.where(seen, edge / scale, 0.0)))
+    return worst + spectral.EPS * (4 + checks.k0 * way), float(np.max(np.where(seen, edge / scale, 0.0)))
 
 
 def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:

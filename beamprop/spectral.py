@@ -153,7 +153,10 @@ def plan_bent(reach: Reach, rtol: float, noise: float = EPS, deepest: float = ma
     X = max(reach.extent, reach.source)
     growth = min(max(1.5, math.log(rtol / (30 * max(noise, 2 * EPS)))), DEEPEST)
     depth = min(growth / X, 0.35 * reach.branch, deepest)
-    return BentPlan(depth, 1.2 * X + 0.8 * math.log(10 / rtol) / depth, reach.band, reach.branch)
+    decades = math.log(10 / rtol)
+    # far from its launch plane what is left on the path is exp(-i s^2 Z/2k0) about s = 0, whose width asks for a window too
+    window = max(1.2 * X + 0.8 * decades / depth, 1.5 * math.sqrt(2 * decades * max(reach.path, 0.0) / reach.k0))
+    return BentPlan(depth, window, reach.band, reach.branch)
 
 
 def bent_line(plan: BentPlan) -> Line:
