@@ -115,6 +115,31 @@ def test_a_beam_that_lands_in_the_window_is_not_looked_for():
     assert not judge.survey(s, fan.single(beam), transfers.through(s, beam.z0), x, planes, reach).bright.any()
 
 
+@pytest.mark.parametrize("rtol", [1e-4, 1e-8])
+@pytest.mark.parametrize(("width", "angle", "z0"), [(0.2, 45.0, -300.0), (5.0, 60.0, -1000.0), (0.7, 85.0, -30.0)])
+def test_beams_from_far_away(width, angle, z0, rtol):
+    """Launched hundreds of wavelengths in front, seen beside the axis: no warning, against a quadrature over real kx."""
+    wavelength = 343 / F
+    k0, a = 2 * np.pi / wavelength, width * wavelength / (2 * np.sqrt(np.log(2)))
+    beam = bp.GaussianBeam(width * wavelength, angle, z0=z0 * wavelength)
+    x, far = wavelength * np.linspace(-1, 1, 7), -beam.z0 * np.tan(np.radians(np.linspace(0, angle, 40)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ds = bp.field(bp.Slab.uniform(bp.AIR, 0.1), beam, F, x, 0.0, rtol=rtol)
+    # kx = k0 sin(u) below k0, and k0 cosh(v) beyond, as far as waves arrive; weights dkx
+    u, w = panels(-np.pi / 2, np.pi / 2, int(10 - 4 * z0))
+    v, dv = panels(0, np.arcsinh(40 / abs(k0 * beam.z0)), 40)
+    k = k0 * np.concatenate([np.sin(u), np.cosh(v), -np.cosh(v)])
+    kz = k0 * np.concatenate([np.cos(u), 1j * np.sinh(v), 1j * np.sinh(v)])
+    weight = k0 * np.concatenate([np.cos(u) * w, np.sinh(v) * dv, np.sinh(v) * dv]) / (2 * np.pi)
+    S = a * np.sqrt(np.pi) * np.exp(-((a * (k - k0 * np.sin(np.radians(angle))) / 2) ** 2))
+    sent = S * weight * np.exp(-1j * kz * beam.z0)
+    near, there = (np.exp(1j * np.outer(at, k)) @ sent for at in (x, far))
+    peak = max(np.abs(near).max(), np.abs(there).max())
+    assert np.abs(ds.p.values - near).max() < 3 * float(ds.error_estimate) * peak
+    assert float(ds.error_estimate) <= rtol
+
+
 # --- work and what is asked -------------------------------------------------------------------------------
 
 
