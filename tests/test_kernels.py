@@ -212,8 +212,10 @@ def plain_back(layers, j, omega, kx, state, share):
     return d * state[0] - b * state[1], a * state[1] - c * state[0], state[2]
 
 
+@pytest.mark.parametrize("at_once", [0, 2**14])
 @pytest.mark.parametrize("seed", SEEDS)
-def test_the_field_inside_against_all_layers_in_turn(seed):
+def test_the_field_inside_against_all_layers_in_turn(seed, at_once, monkeypatch):
+    monkeypatch.setattr(inside, "AT_ONCE", at_once)
     rng = np.random.default_rng(seed)
     s = scene.scene(random_slab(rng), 2500.0)
     kx = random_kx(rng, 40)

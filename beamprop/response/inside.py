@@ -124,6 +124,11 @@ def _fill_periodic(
         return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
     behind, which = _counts(periods - 1 - places.period)
     states, factors = _in_two_terms(m, b, far, behind, near_log, per_incident)
+    if rows.size * kx.shape[1] <= AT_ONCE:
+        p = _few_pressures(layers, omega, kx, places, states)
+        p *= factors[which]
+        out[rows] = p[:, 0] + p[:, 1]
+        return None
     size = max(ROWS, BLOCK // (4 * kx.shape[1]))
     gathered = np.empty((size, 2, kx.shape[1]), complex)
     for here, pressures in _back_through(layers, omega, kx, places, states):
@@ -136,6 +141,8 @@ def _fill_periodic(
 
 #: The fewest depths that are worked on at a time.
 ROWS = 32
+#: Up to so many numbers the number of statements is what all depths cost: they are worked on at once, whatever their layers.
+AT_ONCE = 2**14
 
 
 def _in_two_terms(
@@ -239,19 +246,37 @@ def _back_through(
     layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places, states: State
 ) -> Iterator[tuple[np.ndarray, Pressures]]:
     """Carry states (2, n) back through a cell in which nothing grows: for each layer that holds depths, which, and how."""
-    omega2, kx2 = omega * omega, kx * kx
     holding = dict(_by_layer(places))
+    for j, A, B, face in _faces_back(layers, omega, kx, set(holding), states):
+        yield holding[j], _rest_of_layer(A, B, face, holding[j].size)
+
+
+def _faces_back(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, wanted: set[int], states: State
+) -> Iterator[tuple[int, np.ndarray, np.ndarray, State]]:
+    """Carry states (2, n) back through a cell in which nothing grows: wanted layers, their A and B, states at their far faces."""
+    omega2, kx2 = omega * omega, kx * kx
     p, q, _ = states
-    first, size = min(holding), max(1, 4 * BLOCK // kx.size)
+    first, size = min(wanted), max(1, 4 * BLOCK // kx.size)
     for stop in range(len(layers.thickness), first, -size):
         start = max(first, stop - size)
         A, B, f = several_layers(layers, slice(start, stop), omega2, kx2)
         As, Bs = A * f.s, B * f.s
         for i in reversed(range(stop - start)):
-            if start + i in holding:
-                here = holding[start + i]
-                yield here, _rest_of_layer(A[i], B[i], State(p, q, states.log), here.size)
+            if start + i in wanted:
+                yield start + i, A[i], B[i], State(p, q, states.log)
             p, q = p + (f.c[i] * p - As[i] * q), q + (f.c[i] * q + Bs[i] * p)
+
+
+def _few_pressures(layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places, states: State) -> np.ndarray:
+    """Pressures of two states at all places of a cell, (Z, 2, n), in one step."""
+    # plain: for each place the rest of its layer, from the states at that layer's far face
+    found = list(_faces_back(layers, omega, kx, set(places.layer.tolist()), states))[::-1]
+    at = np.searchsorted([j for j, *_ in found], places.layer)
+    A, B, p, q = (np.stack(v)[at] for v in zip(*((A, B, s.p, s.q) for _, A, B, s in found), strict=True))
+    part = places.share[:, None, None]
+    f = entire(A * B * part**2)  # (Z, 1, n)
+    return p + (f.c * p - A * part * f.s * q)
 
 
 #: From how many depths in a layer on a series in the share is cheaper than the functions themselves.
