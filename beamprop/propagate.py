@@ -166,12 +166,16 @@ def _fill_from_few(
     ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
     scale = np.max(np.abs(theirs), axis=2)
     scale = np.where(scale > judge.DARK, scale, np.inf)
+    room = rtol - float(np.max(solution.error))  # what the line has left of rtol, if it keeps it
+    allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
     for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
-        mix = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
-        for some, into in zip(ours, out, strict=True):
-            np.matmul(mix, some[:count], out=into)
-        # some planes stand for all: the worst of the others may be a few times worse
-        error = 5 * np.max(np.max(np.abs(out[:, tried] - theirs), axis=2) / scale, axis=1)
-        if np.max(error) <= 0.1 * rtol:  # a nan is not
-            return np.maximum(error, 3e-4 * rtol)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
+            mix = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
+            for some, into in zip(ours, out, strict=True):
+                np.matmul(mix, some[:count], out=into)
+            # some planes stand for all: the worst of the others may be a few times worse
+            error = 5 * np.max(np.max(np.abs(out[:, tried] - theirs), axis=2) / scale, axis=1)
+        error = np.maximum(error, 3e-4 * rtol)
+        if np.max(error) <= allowed:
+            return error
     return None

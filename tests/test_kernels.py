@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import conventions, fan, judge, planes, products, propagate, response, scene, sections, spectral
+from beamprop import conventions, fan, judge, lines, planes, products, propagate, response, scene, sections, spectral
 from beamprop.media import layer_values
 from beamprop.response import cells, inside, march
 from beamprop.response import layers as one
@@ -577,6 +577,28 @@ def test_a_map_sums_few_of_its_planes(name, monkeypatch):
         axis=1
     )
     assert apart.max() < 3e-9
+
+
+def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
+    """A line that leaves no room for them: every plane by itself, and no warning."""
+    slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
+    x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
+    choose = lines.choose_line
+    monkeypatch.setattr(lines, "choose_line", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8])))
+    assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
+
+
+def test_the_end_of_a_path_is_not_that_of_its_circles():
+    """What lies beyond a band is judged by the path's last nodes, however strong the nodes around single modes are."""
+    k = np.linspace(1, 50, 60).astype(complex)
+    line = spectral.Line(k, np.ones(60))
+    with_circles = spectral.Line(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
+    right = np.exp(-k / 2)[None]
+    strong = np.concatenate([np.full((1, 400), 1e9 + 0j), right], axis=1)
+    alone = judge._beyond(judge.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
+    beside = judge._beyond(judge.Sampled(with_circles, np.ones((1, 460)), (strong, strong)), strong, strong)
+    np.testing.assert_allclose(beside, alone, rtol=1e-12)
+    assert alone > 0
 
 
 def test_planes_that_do_not_follow_are_summed_themselves(monkeypatch):
