@@ -58,6 +58,17 @@ def _check_launch(angle: Any, z0: Any) -> tuple[float, float]:
     return angle, z0
 
 
+def moved_to_origin(beam: Beam) -> tuple[Beam, float]:
+    """The same source about x = 0, and how far it was moved [m].
+
+    On a contour of complex kx the phase exp(-i kx x0) of a source far from x = 0 overflows, and rounding of x0 would be
+    magnified with it: what is computed does not depend on where the origin lies. A source of the user's own stays where it is
+    unless it has a method `moved_to_origin`, which returns the moved source.
+    """
+    move = getattr(beam, "moved_to_origin", None)
+    return (beam, 0.0) if move is None else (move(), beam.centre)
+
+
 def sin_degrees(angle: Any) -> np.ndarray:
     """sin of an angle in degrees, exact at multiples of 30 degrees where a user expects it."""
     angle = np.asarray(angle, dtype=float)
@@ -137,6 +148,10 @@ class GaussianBeam(_Tilted):
     def centre(self) -> float:
         """x0 [m]."""
         return self.x0
+
+    def moved_to_origin(self) -> GaussianBeam:
+        """The same beam with x0 = 0."""
+        return replace(self, x0=0.0)
 
     @property
     def entire(self) -> bool:  # type: ignore[override]
@@ -324,6 +339,10 @@ class Profile(_Tilted):
     def centre(self) -> float:
         """Middle of the sampled interval [m]."""
         return float((self.x[0] + self.x[-1]) / 2)
+
+    def moved_to_origin(self) -> Profile:
+        """The same samples about x = 0."""
+        return replace(self, x=self.x - self.centre)
 
     def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
         S = self.spacing * _spectral_sum(k, self.x, self.p)

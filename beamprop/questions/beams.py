@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from .. import datasets, sections, widths
-from ..beam import Beam
+from ..beam import Beam, moved_to_origin
 from ..media import Slab, as_number
 from ..scene import scenes
 from . import checks
@@ -126,6 +126,7 @@ def beam_width(
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
     most, worst = np.zeros(4, int), 0.0
+    source, origin = moved_to_origin(beam)
     work = [
         (rows, j)
         for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
@@ -133,11 +134,12 @@ def beam_width(
     ]
     for rows, j in progress(work):
         s = scenes(slab, flat[rows])
-        found, met, errors = sections.rows(s, beam.at_angle(float(flat_angles[j])), rtol, air_distance)
+        found, met, errors = sections.rows(s, source.at_angle(float(flat_angles[j])), rtol, air_distance)
         most = np.maximum(most, met.max(axis=1).astype(int))
         worst = max(worst, float(errors.max()))
         for name, values in found._asdict().items():
             table[name][rows, j] = values
+    table["centroid_out"] += origin
     checks.announce(worst, rtol)
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
