@@ -22,13 +22,15 @@ MOST_MODES = 200_000
 ATTEMPTS = 14
 
 
-def even_spacing(x: np.ndarray) -> float:
-    """Spacing of an even grid, 0 for any other."""
-    if x.size < 8:
-        return 0.0
-    dx = (x[-1] - x[0]) / (x.size - 1)
-    even = dx > 0 and np.max(np.abs(x - (x[0] + dx * np.arange(x.size)))) <= 1e-12 * max(abs(x[0]), abs(x[-1]))
-    return float(dx) if even else 0.0
+#: FFTs are for even grids of at least this many points.
+FEWEST = 8
+
+
+def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
+    """Spacing of a grid that is even as far as an FFT needs it (see `spectral.grid_sum`), 0 for any other."""
+    grid = spectral.grid_of(x)
+    moved = band * grid.unevenness
+    return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
 
 
 def _reach(s: Scene, fan: Fan, x: np.ndarray, z: np.ndarray, rtol: float) -> Reach:
@@ -191,7 +193,7 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
     They are judged by the second bent path of the present plan, once for each plan.
     """
     checks, rtol, plan = search.checks, search.rtol, search.plan
-    dx = even_spacing(x)
+    dx = spacing_for_fft(x, plan.band, rtol)
     if not dx or search.judged_by == plan:
         return None
     search.judged_by = plan
@@ -233,8 +235,8 @@ def periodic_solution(s: Scene, fan: Fan, x: np.ndarray, period: float) -> Solut
     """The plain sum over the real orders of a stated period."""
     band = min(fan.band(s.k0, 1e-15), 2 * np.pi * MOST_MODES / period)
     line = spectral.periodic_line(period, band)
-    dx = even_spacing(x)
+    dx = spacing_for_fft(x, band, spectral.EPS)
     n = round(period / dx) if dx else 0
-    fits = n and abs(n * dx - period) < 1e-12 * period and spectral.fast_length(n) == n
+    fits = n and abs(n * dx - period) < 4 * spectral.EPS * period and spectral.fast_length(n) == n
     error = np.zeros(fan.angles.size if fan.mix is None else fan.mix.shape[0])
     return Solution(line, error, n if fits and n >= x.size else 0)

@@ -40,13 +40,18 @@ def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, o
     x = x - fan.beam.centre
     fast = n and fft_is_cheaper(n, line.k.size, x.size)
     if fan.mix is not None:
-        summed = spectral.fft_sum(line, h, right, left, x, n) if fast else spectral.direct_sum(line, h, right, left, x)
+        summed = (
+            spectral.grid_sum(line, h, right, left, spectral.grid_of(x), n)
+            if fast
+            else spectral.direct_sum(line, h, right, left, x)
+        )
         _check_finite(summed)
         fan.mixed(summed, out)
         return
     if fast:
+        grid = spectral.grid_of(x)
         for a, b, into in zip(right, left, out, strict=True):
-            spectral.fft_sum(line, h, a, b, x, n, into)
+            spectral.grid_sum(line, h, a, b, grid, n, into)
     elif len(right) == 1 or h.shape[0] > 64:
         for a, b, into in zip(right, left, out, strict=True):
             into[...] = spectral.direct_sum(line, h, a, b, x)

@@ -251,33 +251,72 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
     return out.reshape(*rows, x.size)
 
 
+class Grid(NamedTuple):
+    """Positions as an even grid and what they are off it, x = start + step j + offsets; step 0 where they are no such grid.
+
+    `offsets` is None where the positions are even to their own rounding: a grid that a user has typed, read from a file
+    or moved is even to some printed digits only.
+    """
+
+    start: float
+    step: float
+    count: int
+    offsets: np.ndarray | None
+
+    @property
+    def even(self) -> np.ndarray:
+        """The even grid's own positions."""
+        return self.start + self.step * np.arange(self.count)
+
+    @property
+    def unevenness(self) -> float:
+        """The largest offset [m]."""
+        return 0.0 if self.offsets is None else float(np.max(np.abs(self.offsets)))
+
+
+#: From what share of the step on an offset makes a grid uneven.
+UNEVEN = 1e-2
+
+
+def grid_of(x: np.ndarray) -> Grid:
+    """The even grid from the first to the last position, and the offsets from it."""
+    if x.size < 2 or not x[-1] > x[0]:
+        return Grid(float(x[0]), 0.0, x.size, None)
+    grid = Grid(float(x[0]), float((x[-1] - x[0]) / (x.size - 1)), x.size, None)
+    offsets = x - grid.even
+    largest = float(np.max(np.abs(offsets)))
+    if largest > UNEVEN * grid.step:
+        return grid._replace(step=0.0)
+    return grid if largest <= 4 * EPS * float(max(abs(x[0]), abs(x[-1]))) else grid._replace(offsets=offsets)
+
+
 #: On even grids of at least this many points exponentials are products of two small tables, this many apart.
 TABLE, STEP = 64, 32
 
 
 def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.ndarray | None]:
     """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small."""
+    # plain: forth = exp(i k x), back = exp(-i k x)
     ik = 1j * k[:, None]
-    if not _is_even(x):
+    grid = grid_of(x) if x.size >= TABLE else None
+    if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
         forth = np.exp(ik * x)
         return forth, 1 / forth if both else None
-    dx = (x[-1] - x[0]) / (x.size - 1)
-    coarse, fine = np.exp(ik * (x[0] + dx * np.arange(0, x.size, STEP))), np.exp(ik * (dx * np.arange(STEP)))
+    starts = grid.start + grid.step * np.arange(0, x.size, STEP)
+    coarse, fine = np.exp(ik * starts), np.exp(ik * (grid.step * np.arange(STEP)))
     forth = _outer(coarse, fine, x.size)
-    return forth, _outer(1 / coarse, 1 / fine, x.size) if both else None
+    back = _outer(1 / coarse, 1 / fine, x.size) if both else None
+    if grid.offsets is not None:  # exp(+-i k offset) to first order
+        turn = ik * grid.offsets
+        if back is not None:
+            back -= back * turn
+        forth += forth * turn
+    return forth, back
 
 
 def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
     out = coarse[:, :, None] * fine[:, None, :]
     return out.reshape(coarse.shape[0], -1)[:, :count]
-
-
-def _is_even(x: np.ndarray) -> bool:
-    """Whether a grid is even to rounding, and large enough for tables."""
-    if x.size < TABLE:
-        return False
-    even = np.linspace(x[0], x[-1], x.size)
-    return float(np.max(np.abs(x - even))) <= 4 * EPS * max(abs(float(x[0])), abs(float(x[-1])))
 
 
 class _Plan(NamedTuple):
@@ -415,3 +454,34 @@ def fft_sum(
         else:
             np.multiply(result[0, : stop - start], scale[0], out=real[start:stop])
     return flat.reshape(shape)
+
+
+#: Numbers in a block of slopes, by which fields are moved from an even grid to the positions asked for.
+SLOPES = 2**20
+
+
+def grid_sum(
+    line: Line,
+    h: np.ndarray,
+    right: np.ndarray,
+    left: np.ndarray,
+    grid: Grid,
+    n: int,
+    out: np.ndarray | None = None,
+) -> np.ndarray:
+    """`fft_sum` at the positions that were asked for: p + offset dp/dx where they lie off the even grid.
+
+    What is left out is (k offset)^2/2 of a plane wave.
+    """
+    p = fft_sum(line, h, right, left, grid.even, n, out)
+    if grid.offsets is None:
+        return p
+    ik = 1j * line.k
+    beams = right.size // right.shape[-1]
+    rows = max(1, SLOPES // (grid.count * beams))
+    for start in range(0, h.shape[0], rows):
+        part = slice(start, start + rows)
+        slope = fft_sum(line, h[part], right * ik, -left * ik, grid.even, n)
+        slope *= grid.offsets
+        p[..., part, :] += slope
+    return p

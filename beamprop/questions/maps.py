@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, lines, propagate, transfers
-from ..beam import Beam
+from .. import datasets, lines, propagate, spectral, transfers
+from ..beam import Beam, moved_to_origin
 from ..fan import Fan, fan
 from ..media import Slab, as_number
 from ..scene import Scene, scene
@@ -40,9 +40,11 @@ class FieldMap:
             raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
         self.slab, self.beam, self.boundary, self.period = slab, beam, boundary, period
         self.axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
-        self.frequency, self.angles, self.z, self.x = (np.atleast_1d(v) for v in self.axes.values())
+        self.frequency, self.angles, self.z, positions = (np.atleast_1d(v) for v in self.axes.values())
+        self._source, origin = moved_to_origin(beam)
+        self.x = positions - origin  # from the source's middle, as all that is computed
         if boundary == "periodic":
-            self.period = _period(period, self.x, beam, slab, self.frequency)
+            self.period = _period(period, self.x, self._source, slab, self.frequency)
         elif period is not None:
             raise ValueError(f"period: expected none with boundary='open', got {period!r}")
         self.dims, self.pick = checks.dims(**self.axes)
@@ -56,7 +58,7 @@ class FieldMap:
     def choose(self, i: int) -> None:
         """The line of integration, and the error, for frequency i."""
         s = scene(self.slab, float(self.frequency[i]))
-        beams = fan(self.beam, self.angles, s.k0, self.rtol * 1e-4)
+        beams = fan(self._source, self.angles, s.k0, self.rtol * 1e-4)
         if self.period is None:
             transfer = transfers.through(s, self.beam.z0)
             solution = lines.choose_line(s, beams, transfer, self.x, self.z, self.rtol)
@@ -105,7 +107,7 @@ class FieldMap:
 def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
     """The period of a periodic boundary; refused where neighbouring beams overlap."""
     if period is None:
-        dx = lines.even_spacing(x)
+        dx = spectral.grid_of(x).step
         if not dx:
             raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
         period = dx * x.size
