@@ -52,6 +52,11 @@ class Fan(NamedTuple):
         ends = (self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max()))
         return max(max(-lo, hi) for lo, hi in ends)
 
+    def low(self, k0: float, tolerance: float) -> float:
+        """|kx| below which all spectra are below `tolerance` of their largest value [rad/m]."""
+        ends = [self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max())]
+        return max(0.0, min(lo for lo, _ in ends), -max(hi for _, hi in ends))
+
     def mixed(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
         """The asked fields (A, ...) of those that were summed (B, ...), complex."""
         if self.mix is None:

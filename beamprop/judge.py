@@ -16,7 +16,7 @@ import numpy as np
 from . import spectral
 from .beam import Beam
 from .fan import Fan
-from .scene import Scene
+from .scene import Scene, real_branches
 from .spectral import Line, Reach
 from .transfers import Transfer, shifts
 
@@ -74,12 +74,16 @@ class Survey(NamedTuple):
 
     noise: float  #: relative rounding of the response at the first and last plane
     bright: np.ndarray  #: see `Checks`
+    sharp: float  #: distance from kx = 0 of the nearest singularity, inf where none is near
 
 
-def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach) -> Survey:
-    """Rounding, seen in the change of the response when k changes in the last bits; and where beams land, by stationary phase.
+def survey(
+    s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float
+) -> Survey:
+    """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
+    whether the response is sharp at kx = 0.
 
-    Both at the first and the last plane: if the beam lands among the positions there, it does so between.
+    All at the first and the last plane: if the beam lands among the positions there, it does so between.
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     asked = fan.asked
@@ -88,16 +92,63 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
-    h = transfer(np.concatenate([k, k * (1 + SHIFT), beside]), ends)
+    first_node = math.pi / spectral.plan_bent(reach, rtol).window
+    near = _around_origin(np.array([first_node]))
+    h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
-    middle, half = _landing(fan, h[:, 2 * k.size :], some.size, step)
+    allowed = max(0.01 * rtol, 30 * max(noise, spectral.EPS))
+    sharp = math.inf
+    if not _is_calm(h[:, 2 * k.size : 2 * k.size + near.size], 1, allowed)[0]:
+        sharp = _nearest_singularity(transfer, ends, first_node, s.k0, allowed)
+    middle, half = _landing(fan, h[:, 2 * k.size + near.size :], some.size, step)
     bright = np.zeros((asked.size, z.size))
     if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
         if z.size > 1:
             middle, half = _landing(fan, transfer(beside, z), some.size, step)
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
         bright = _interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
-    return Survey(noise, bright)
+    return Survey(noise, bright, sharp)
+
+
+#: Points on the half circle around kx = 0 over which a response is averaged.
+AROUND = 16
+#: Singularities nearer to kx = 0 than this, over k0, are below the rounding of kx^2 and w^2.
+NEAREST = 1e-9
+
+
+def _around_origin(radii: np.ndarray) -> np.ndarray:
+    """A point next to kx = 0, and `AROUND` points on the upper half circle of each radius."""
+    turn = np.exp(1j * np.pi * (np.arange(AROUND) + 0.5) / AROUND)
+    return np.concatenate([[1e-9 * radii.min()], np.multiply.outer(radii, turn).ravel()])
+
+
+def _is_calm(h: np.ndarray, radii: int, allowed: float) -> np.ndarray:
+    """Whether nothing singular lies inside circles around kx = 0, (radii,), from the response at `_around_origin`, (Z, .).
+
+    The response is an even function of kx, so that kx^2 goes once around 0 on the half circle: the mean over it is the value at
+    0 where the response is analytic inside (Cauchy), and lacks the share of poles inside it otherwise.
+    """
+    at_0, around = h[:, :1], h[:, 1:].reshape(h.shape[0], radii, AROUND)
+    size = np.maximum(np.abs(at_0), np.max(np.abs(around), axis=2))
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.abs(around.mean(axis=2) - at_0) / np.where(size > 0, size, 1.0)
+    return np.max(np.nan_to_num(apart, nan=np.inf), axis=0) <= allowed
+
+
+def _nearest_singularity(transfer: Transfer, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
+    """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular."""
+    count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
+    radii = radius * 4.0 ** -np.arange(count)
+    calm = _is_calm(transfer(_around_origin(radii), z), count, allowed)
+    disturbed = np.flatnonzero(~calm)
+    return float(radii[min(disturbed[-1] + 1, count - 1)]) if disturbed.size else math.inf
+
+
+def wide_enough(transfer: Transfer, z: np.ndarray, low: float, band: float) -> bool:
+    """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane, not only what else there is."""
+    k = np.linspace(low, band, 24) + 0j
+    h = np.abs(transfer(k, z[[0, -1]] if z.size > 1 else z))
+    return bool(np.all(np.max(np.nan_to_num(h), axis=1) > 0.01))
 
 
 def _landing(fan: Fan, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
@@ -134,7 +185,7 @@ def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: n
         return np.zeros(found.shape[1:])
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
-        line = spectral.propagating_line(s.k0, list(s.branches), int(more * count))
+        line = spectral.propagating_line(s.k0, real_branches(s), int(more * count))
         right, left = amplitudes(s.k0, beams, line)
         with np.errstate(invalid="ignore", over="ignore"):
             p = spectral.direct_sum(line, transfer(line.k, z), right, left, x)

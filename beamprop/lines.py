@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import judge, modes, spectral
+from . import judge, misplaced, spectral
 from .fan import Fan
 from .judge import Checks
-from .scene import Scene
+from .scene import Scene, is_lossless, last_branch, nearest_branch, real_branches
 from .spectral import BentPlan, Line, Reach
 from .transfers import Transfer
 
@@ -40,7 +40,7 @@ def _reach(s: Scene, fan: Fan, x: np.ndarray, z: np.ndarray, rtol: float) -> Rea
     extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = min(fan.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
-    return Reach(s.k0, min(s.branches), band, max(extent, source), source, path)
+    return Reach(s.k0, nearest_branch(s), band, max(extent, source), source, path)
 
 
 def _arriving(s: Scene, z0: float, z: np.ndarray, tolerance: float) -> float:
@@ -50,7 +50,7 @@ def _arriving(s: Scene, z0: float, z: np.ndarray, tolerance: float) -> float:
     """
     nearest = float(z.min())
     way = min(nearest, 0.0) - z0 + max(0.0, nearest - s.thickness)
-    return math.hypot(max(s.branches), math.log(1 / tolerance) / way) if way > 0 else math.inf
+    return math.hypot(last_branch(s), math.log(1 / tolerance) / way) if way > 0 else math.inf
 
 
 class Solution(NamedTuple):
@@ -86,11 +86,11 @@ def choose_line(
     reach = _reach(s, fan, x, z, rtol)
     many = fan.mix is not None and fan.asked.size > judge.JUDGED
     points, planes = judge.check_points(x, z, fan.beam.centre, reach.source, s.thickness, many)
-    noise, bright = judge.survey(s, fan, transfer, points, planes, reach)
-    checks = Checks(fan, s.k0, transfer, points, planes, guided, bright)
+    seen = judge.survey(s, fan, transfer, points, planes, reach, rtol)
+    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright)
     if not fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol)
-    search = _Search(s, checks, reach, rtol, noise)
+    search = _Search(s, checks, reach, rtol, seen)
     straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
         return straight
@@ -98,35 +98,58 @@ def choose_line(
     return _straight_solution(search, x) or bent
 
 
-class _Search:
-    """The search for a line: what is known of the modes on its wrong side, and the plan that has come so far."""
+#: From how many plane waves on those nearer to the normal than a beam's own are left out.
+MANY_MODES = 20_000
 
-    def __init__(self, s: Scene, checks: Checks, reach: Reach, rtol: float, noise: float) -> None:
-        self.scene, self.checks, self.reach, self.rtol, self.noise = s, checks, reach, rtol, noise
-        self.plan: BentPlan = spectral.plan_bent(reach, rtol, self.noise)
+
+class _Search:
+    """The search for a contour: what is known of the poles on its wrong side, and the plan that has come so far."""
+
+    def __init__(self, s: Scene, checks: Checks, reach: Reach, rtol: float, seen: judge.Survey) -> None:
+        self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
+        self.noise, self.sharp = seen.noise, seen.sharp
+        self.plan: BentPlan = self._planned(math.inf)
         if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
             self.reach = reach._replace(band=judge.arriving_band(s, checks, reach, rtol * 1e-3))
-            self.plan = spectral.plan_bent(self.reach, rtol, self.noise)
-        self.found, self.searched = modes.NONE, 0.0 if checks.guided else math.inf
+            self.plan = self._planned(math.inf)
+        if self.plan.count > MANY_MODES:
+            low = checks.fan.low(s.k0, 1e-6 * rtol)
+            if low > 0 and judge.wide_enough(checks.transfer, checks.z, low, self.reach.band):
+                self.reach = self.reach._replace(low=low)
+                self.plan = self._planned(math.inf)
+        self.found, self.searched = misplaced.NONE, 0.0 if checks.guided else math.inf
         self.judged_by: BentPlan | None = None  # the last plan by which a straight line was judged
+
+    def _planned(self, deepest: float) -> BentPlan:
+        return spectral.plan_bent(self.reach, self.rtol, self.noise, deepest, self.sharp)
 
     def too_wide(self) -> bool:
         """Whether the present plan takes too many plane waves."""
-        second = self.plan.other()
-        return second.band * second.window > 2 * np.pi * MOST_MODES
+        return self.plan.other().count > MOST_MODES
 
-    def look(self) -> modes.Between:
-        """Modes above the path of the present plan, searched for as far as its band goes."""
+    def look(self) -> misplaced.MisplacedPoles:
+        """Poles on the wrong side of the contour of the present plan, searched for as far as its band goes."""
         if self.plan.band > self.searched:
             self.searched = 1.15 * self.plan.band
-            self.found = modes.between(self.scene, 1.05 * self.plan.depth, self.searched)
+            start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
+            self.found = misplaced.misplaced(self.scene, 1.05 * self.plan.depth, self.searched, start)
+            self._cross()
         return self.found
+
+    def _cross(self) -> None:
+        """Let the contour cross the axis where it has to, no steeper than it leaves the origin."""
+        if not math.isfinite(self.found.crossing):
+            return
+        gap = self.found.gap / 2
+        if self.plan.depth > 0.5 * gap:
+            self.plan = self._planned(0.5 * gap)._replace(band=self.plan.band)
+        self.plan = self.plan._replace(crossing=self.found.crossing, gap=gap)
 
     def lines(self) -> tuple[Line, Line]:
         """The path of the present plan and a second one to judge it by, circles around what they leave on the wrong side."""
         reach = self.reach
         one, two = (
-            modes.with_circles(
+            misplaced.with_residues(
                 self.scene, spectral.bent_line(p), self.found, max(reach.extent, reach.source), reach.path, bool(i)
             )
             for i, p in enumerate((self.plan, self.plan.other()))
@@ -135,8 +158,7 @@ class _Search:
 
     def shallower(self, depth: float) -> None:
         """Plan again, nearer to the axis: there are fewer modes between them."""
-        deepest = self.reach._replace(band=self.plan.band)
-        self.plan = spectral.plan_bent(deepest, self.rtol, self.noise, depth)
+        self.plan = self._planned(depth)._replace(band=self.plan.band)
         self.searched = 0.0
 
 
@@ -144,16 +166,16 @@ def _bent_solution(search: _Search) -> Solution:
     """Widen the window, or the band where its edge is what is missing, until two bent paths agree."""
     s, checks, rtol = search.scene, search.checks, search.rtol
     best: Solution | None = None
-    shrinks = 2 if modes.is_lossless(s) else 6  # on the axis itself their number does not fall
+    shrinks = 2 if is_lossless(s) else 6  # on the axis itself their number does not fall
     in_vain = 0
     for _ in range(ATTEMPTS):
-        plan = search.plan
         if search.too_wide():
             break
         found = search.look()
-        if found is modes.UNCLEAR and shrinks == 0:
+        plan = search.plan
+        if found is misplaced.UNCLEAR and shrinks == 0:
             break
-        if found is modes.UNCLEAR:
+        if found is misplaced.UNCLEAR:
             shrinks -= 1
             search.shallower(plan.depth / 3)
             continue
@@ -162,7 +184,7 @@ def _bent_solution(search: _Search) -> Solution:
         error, edge = judge.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
-            best = Solution(line, error, circles=bool(found.wrong), amplitudes=one.amplitudes)
+            best = Solution(line, error, circles=bool(found.poles), amplitudes=one.amplitudes)
         in_vain = in_vain + 1 if stuck else 0
         if error.max() <= rtol or in_vain > 3:
             break
@@ -173,7 +195,7 @@ def _bent_solution(search: _Search) -> Solution:
         else:  # images fall as exp(-depth W)
             more = math.log(min(float(error.max()), 1e6) / (0.3 * rtol)) / plan.depth
             search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
-    if best is None and search.found is modes.UNCLEAR:
+    if best is None and search.found is misplaced.UNCLEAR:
         raise ValueError("slab: it guides more backward waves than can be told from the forward ones; add loss")
     if best is None:
         raise ValueError(
@@ -194,14 +216,14 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
     """
     checks, rtol, plan = search.checks, search.rtol, search.plan
     dx = spacing_for_fft(x, plan.band, rtol)
-    if not dx or search.judged_by == plan:
+    if not dx or search.judged_by == plan or plan.grading or plan.low:
         return None
     search.judged_by = plan
     size, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
         straight = spectral.plan_open(search.reach, rtol, tighten, search.noise)
         n = spectral.fast_length(max(math.ceil(share * straight.window / dx), x.size))
-        if not fft_is_cheaper(n, size, x.size) or search.look().wrong:
+        if not fft_is_cheaper(n, size, x.size) or _is_misplaced(search.look()):
             return None
         if second is None:
             second = judge.sampled(checks, search.lines()[1], True)
@@ -213,6 +235,11 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
     return None
 
 
+def _is_misplaced(found: misplaced.MisplacedPoles) -> bool:
+    """Whether a contour below the axis alone leaves any pole on its wrong side."""
+    return bool(found.poles) or math.isfinite(found.crossing)
+
+
 def fft_is_cheaper(n: int, modes: float, points: int) -> bool:
     """Whether two FFTs of length n cost less than a row of a matrix product (in units that were measured)."""
     return 5.5 * n * math.log2(n) < modes * points
@@ -222,7 +249,7 @@ def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float) -
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes agree."""
     count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
     for _ in range(6):
-        lines = [spectral.propagating_line(s.k0, list(s.branches), c) for c in (count, int(1.4 * count))]
+        lines = [spectral.propagating_line(s.k0, real_branches(s), c) for c in (count, int(1.4 * count))]
         one, two = (judge.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
         error, _ = judge.difference(checks, one, two)
         if error.max() <= rtol or count > MOST_MODES // 4:

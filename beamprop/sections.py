@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import lines, modes, propagate, spectral, transfers
+from . import lines, misplaced, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
 from .response import solve
-from .scene import Scene, at_frequency
+from .scene import Scene, at_frequency, is_lossless, nearest_branch
 from .spectral import Line, OpenPlan, Reach
 from .transfers import Transfer, shifts
 from .widths import HALF_LEVEL, centroid, crossings, full_width
@@ -141,7 +141,7 @@ def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray,
     lo, hi = beam.band(s.k0, rtol * 1e-2)
     source = beam.reach(rtol * 1e-2)
     extent = np.abs(middle - beam.centre) + half
-    branch = np.min(np.stack(s.branches), axis=0)
+    branch = nearest_branch(s)
     return spectral.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
 
 
@@ -182,9 +182,12 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
 
 def _backward(s: Scene, plan: OpenPlan) -> np.ndarray:
     """Where the lines leave a mode on their wrong side, (F,)."""
-    bad = modes.some_between(s, 1.1 * plan.sigma, plan.band)
-    for i in np.flatnonzero(bad) if modes.is_lossless(s) else []:  # what was counted may be forward
-        bad[i] = bool(modes.between(at_frequency(s, int(i)), 1.1 * float(plan.sigma[i]), float(plan.band[i])).wrong)
+    bad = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
+    for i in np.flatnonzero(bad) if is_lossless(s) else []:  # what was counted may be forward
+        one = at_frequency(s, int(i))
+        start = min(1e-3 * one.k0, 0.1 * nearest_branch(one))
+        found = misplaced.misplaced(one, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
+        bad[i] = bool(found.poles) or math.isfinite(found.crossing)
     return bad
 
 
@@ -342,7 +345,7 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple
     def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
-        alone = s._replace(branches=(s.k0,))
+        alone = s._replace(branches=(s.k0 + 0j,))
         route = Route(alone, without(s, distance), transfers.free, distance, distance, False)
         found = measure(route, beam, rtol)
         return found.width, found.crossings, found.error

@@ -58,11 +58,12 @@ class Reach(NamedTuple):
     """What a line must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
 
     k0: Any  #: wavenumber of the medium in front
-    branch: Any  #: smallest |kx| of a branch point or pole, kb
+    branch: Any  #: smallest |kx| of a branch point, kb
     band: Any  #: largest |Re kx| of the source's spectrum
     extent: Any  #: X, from the beam's middle to the farthest point asked for
     source: Any  #: reach of the launch profile about its middle
     path: Any  #: Z, from the launch plane to the farthest plane asked for
+    low: Any = 0.0  #: smallest |Re kx| of the source's spectrum
 
 
 class OpenPlan(NamedTuple):
@@ -127,47 +128,118 @@ def open_line(plan: OpenPlan) -> Line:
 
 
 class BentPlan(NamedTuple):
-    """The numbers of a bent path: depth below the axis, W, band, and the branch point that sets the bend."""
+    """The numbers of a bent contour.
 
-    depth: float
-    window: float
-    band: float
-    branch: float
+    Below the axis up to Re kx = `crossing` and above it beyond; nodes are graded towards the origin from `sharp` on.
+    """
+
+    depth: float  #: below the axis
+    window: float  #: W = 2 pi / spacing of the nodes
+    band: float  #: Re kx where it ends
+    bend: float  #: over which it leaves the axis
+    low: float = 0.0  #: Re kx where it begins: a beam may have no plane waves nearer to the normal
+    sharp: float = math.inf  #: distance of the nearest singularity from the origin, where nodes are graded
+    grading: float = 0.0  #: nodes for each e-fold of |kx|
+    crossing: float = math.inf
+    gap: float = math.inf  #: half-width of the crossing
 
     def other(self) -> BentPlan:
         """A plan that shares no number with this one, to judge it by."""
-        return BentPlan(self.depth * 0.87, self.window * 1.3, self.band * 1.12, self.branch * 0.95)
+        return self._replace(
+            depth=self.depth * 0.87,
+            window=self.window * 1.3,
+            band=self.band * 1.12,
+            bend=self.bend * 0.95,
+            low=self.low * 0.9,
+            sharp=self.sharp * 0.6,
+            grading=self.grading * 1.2,
+            crossing=self.crossing + 0.1 * self.gap if math.isfinite(self.gap) else math.inf,
+            gap=self.gap * 0.8,
+        )
+
+    @property
+    def count(self) -> float:
+        """About how many nodes the contour takes."""
+        graded = self.grading * math.asinh(self.band / self.sharp) if self.grading else 0.0
+        return (self.band - self.low) * self.window / (2 * math.pi) + graded
 
 
 #: Most of depth times X for a first plan; measured over the cases of the accuracy study.
 DEEPEST = 8.0
+#: Depth of a contour over its bend: it leaves the origin at 30 degrees, as far from poles above it on the right as from those
+#: below it on the left.
+SLOPE = 0.35
 
 
-def plan_bent(reach: Reach, rtol: float, noise: float = EPS, deepest: float = math.inf) -> BentPlan:
+def plan_bent(
+    reach: Reach, rtol: float, noise: float = EPS, deepest: float = math.inf, sharp: float = math.inf
+) -> BentPlan:
     """A first plan from the error terms; what they do not know (the field's own width) shows in the difference to `other`.
 
     `noise` is the relative rounding of S h from one k to the next, which exp(depth X) magnifies; `deepest` is a limit from
-    elsewhere: what lies below the axis. Magnified by more than exp(DEEPEST), images from the other side cost more than what a
-    deeper path saves.
+    elsewhere: what lies below the axis; `sharp` is the distance from the origin of a pole near it. Magnified by more than
+    exp(DEEPEST), images from the other side cost more than what a deeper contour saves.
+
+    What lies much nearer to the origin than the contour could be deep (a branch point of a fast half-space, a resonance at
+    normal incidence) does not hold the contour at the axis: nodes are graded towards the origin instead. On the scale of each
+    |kx| the contour passes all of it by the same angle, SLOPE sees to that.
     """
     X = max(reach.extent, reach.source)
     growth = min(max(1.5, math.log(rtol / (30 * max(noise, 2 * EPS)))), DEEPEST)
-    depth = min(growth / X, 0.35 * reach.branch, deepest)
+    broad = max(reach.branch, reach.k0 / 2) if reach.branch < reach.k0 else reach.branch
+    deep = min(growth / X, SLOPE * broad, deepest)
     decades = math.log(10 / rtol)
-    # far from its launch plane what is left on the path is exp(-i s^2 Z/2k0) about s = 0, whose width asks for a window too
+    nearest = min(reach.branch, sharp)
+    if SLOPE * nearest < deep / 2:
+        depth, bend, graded = deep, deep / SLOPE, (nearest / 2, decades / 2.5)
+    else:
+        depth, bend, graded = min(deep, SLOPE * nearest), reach.branch, (math.inf, 0.0)
+    # far from its launch plane what is left on the contour is exp(-i s^2 Z/2k0) about s = 0, whose width asks for a window too
     window = max(1.2 * X + 0.8 * decades / depth, 1.5 * math.sqrt(2 * decades * max(reach.path, 0.0) / reach.k0))
-    return BentPlan(depth, window, reach.band, reach.branch)
+    return BentPlan(depth, window, reach.band, bend, reach.low, *graded)
 
 
 def bent_line(plan: BentPlan) -> Line:
-    """Nodes k = s - i depth erf(1.5 s/kb), s = (m + 1/2) 2 pi/W, and weights dk/2 pi."""
+    """Nodes k = s - i depth erf(1.5 s/bend) of the trapezoid rule, and weights dk/2 pi; s = (m + 1/2) 2 pi/W where not graded.
+
+    At a crossing the imaginary part changes sign as erf((crossing - s)/gap).
+    """
     from scipy.special import erf
 
+    s, step = _graded(plan)
+    u = 1.5 * s / plan.bend
+    down = erf(u)
+    slope = (1.5 / plan.bend) * GAUSS * np.exp(-(np.minimum(u, 26.0) ** 2))
+    if math.isfinite(plan.crossing):
+        v = (plan.crossing - s) / plan.gap
+        side = erf(v)
+        slope = slope * side - down * (GAUSS / plan.gap) * np.exp(-(np.minimum(np.abs(v), 26.0) ** 2))
+        down = down * side
+    return Line(s - 1j * plan.depth * down, (1 - 1j * plan.depth * slope) * (step / (2 * math.pi)))
+
+
+GAUSS = 2 / math.sqrt(math.pi)
+
+
+def _graded(plan: BentPlan) -> tuple[np.ndarray, np.ndarray | float]:
+    """Re kx of the nodes, and the spacing at each.
+
+    Node m + 1/2 = s/ds + grading asinh(s/sharp): even where s is large, and even in log(s) between `sharp` and there.
+    """
     ds = 2 * math.pi / plan.window
-    s = (np.arange(max(1, math.ceil(plan.band / ds))) + 0.5) * ds
-    u = 1.5 * s / plan.branch
-    slope = 1 - 1j * plan.depth * (1.5 / plan.branch) * (2 / math.sqrt(math.pi)) * np.exp(-(np.minimum(u, 26.0) ** 2))
-    return Line(s - 1j * plan.depth * erf(u), slope * (ds / (2 * math.pi)))
+    if not plan.grading:
+        first = math.floor(plan.low / ds)
+        return (first + np.arange(max(1, math.ceil(plan.band / ds) - first)) + 0.5) * ds, ds
+    a, B = plan.sharp, plan.grading
+    v = np.arange(max(1, math.ceil(plan.band / ds + B * math.asinh(plan.band / a)))) + 0.5
+    # a sinh(y)/ds + B y = v is convex in y: Newton's method from above descends
+    y = np.minimum(v / B, np.arcsinh(v * ds / a))
+    for _ in range(60):
+        step = (a / ds * np.sinh(y) + B * y - v) / (a / ds * np.cosh(y) + B)
+        y = y - step
+        if float(np.max(np.abs(step))) < 1e-14:
+            break
+    return a * np.sinh(y), 1 / (1 / ds + B / (a * np.cosh(y)))
 
 
 def periodic_line(period: float, band: float) -> Line:

@@ -26,6 +26,7 @@ ORDER = [
     "scene",
     "roots",
     "modes",
+    "misplaced",
     "fan",
     "transfers",
     "judge",

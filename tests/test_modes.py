@@ -5,7 +5,7 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop import modes, roots, scene
+from beamprop import misplaced, modes, roots, scene
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -93,9 +93,9 @@ def test_a_cluster_of_backward_modes_gets_one_circle():
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)
     assert apart[1] / apart[2] == pytest.approx(10, rel=0.05)
     s = scene.scene(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
-    found = modes.between(s, 0.3 * K0, 10 * K0)
-    assert len(found.wrong) == len(set(found.wrong))
-    assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.wrong)
+    found = misplaced.misplaced(s, 0.3 * K0, 10 * K0, 1e-3 * K0)
+    assert len(found.poles) == len(set(found.poles))
+    assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.poles)
 
 
 def test_frequencies_are_padded():
@@ -157,8 +157,8 @@ def test_field_far_from_a_slab_with_backward_modes():
     )
     slab, beam = bp.Slab(cell, 12), bp.GaussianBeam(0.11, x0=0.18, z0=-4.0)
     a, k0 = 0.11 / (2 * np.sqrt(np.log(2))), 2 * np.pi * frequency / 343
-    found = modes.between(scene.scene(slab, frequency), 0.1 * k0, 3 * k0)
-    assert any(abs(k) < 0.9 * k0 for k in found.wrong)
+    found = misplaced.misplaced(scene.scene(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
+    assert any(abs(k) < 0.9 * k0 for k in found.poles)
     x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
     want = oracles.open_field(
         [(layer.fluid.density, layer.fluid.bulk_modulus, layer.thickness) for layer in cell.layers],
@@ -185,7 +185,7 @@ def test_wrong_side_would_be_seen():
     from beamprop.scene import scene
 
     s = scene(thin(-0.6, 0.01), F)
-    assert len(modes.between(s, 0.2 * K0, 5 * K0).wrong) == 1
+    assert len(misplaced.misplaced(s, 0.2 * K0, 5 * K0, 1e-3 * K0).poles) == 1
     beam = bp.GaussianBeam(0.02)
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
     transfer = transfers.through(s, 0.0)
@@ -255,13 +255,13 @@ def test_outlines_go_around_once(nodes):
 
 @pytest.mark.parametrize("loss", [0.0, 1e-3, 1e-2])
 def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
-    """As `between` finds them one by one; of a lossless slab forward ones may be counted too."""
+    """As `misplaced` finds them one by one; of a lossless slab forward ones may be counted too."""
     from beamprop.scene import scene, scenes
 
     f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
     depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
-    found = modes.some_between(scenes(slab, f), depth, band)
-    each = [bool(modes.between(scene(slab, a), b, c).wrong) for a, b, c in zip(f, depth, band, strict=True)]
+    found = misplaced.some_misplaced(scenes(slab, f), depth, band)
+    each = [bool(misplaced.misplaced(scene(slab, a), b, c, 1e-3 * K0).poles) for a, b, c in zip(f, depth, band, strict=True)]
     assert np.all(found >= each)
     assert loss == 0 or found.tolist() == each
     assert any(each)

@@ -16,7 +16,7 @@ from ..conventions import outgoing_kz
 from ..fan import single
 from ..media import FluidValues, Slab
 from ..response import solve
-from ..scene import Scene, scene
+from ..scene import Scene, real_branches, scene
 from . import checks
 from .checks import Progress
 
@@ -235,7 +235,7 @@ def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tu
     if k == 0:
         return 0.0, math.nan, math.nan
     extent = beam.reach(1e-6) + s.thickness - beam.z0
-    line = spectral.propagating_line(k, list(s.branches), int(200 + 2 * k * extent))
+    line = spectral.propagating_line(k, real_branches(s), int(200 + 2 * k * extent))
     kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
     flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
     right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))

@@ -10,7 +10,7 @@ import xarray as xr
 from .. import datasets, modes, response, roots
 from ..conventions import outgoing_kz
 from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
-from ..scene import scene
+from ..scene import last_branch, scene
 from . import checks
 
 
@@ -198,7 +198,7 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
     s = scene(slab, frequency)
     if any(np.any(values.layers.vanishing) for values in s.segments):
         raise ValueError("slab: a layer of density 0 blocks every kx other than 0, the slab guides nothing")
-    edge = max(s.branches) * (1 + modes.BESIDE)
+    edge = last_branch(s) * (1 + modes.BESIDE)
     if highest * s.k0 <= edge:
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
