@@ -136,6 +136,16 @@ class _Search:
             self._cross()
         return self.found
 
+    def refusal(self) -> str:
+        """Why poles cannot be put right, and what would do."""
+        start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
+        loss = misplaced.enough_loss(self.scene, 1.05 * self.plan.depth, 1.15 * self.plan.band, start)
+        remedy = "" if loss is None else (
+            f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
+            "in every layer and half-space"
+        )
+        return f"slab: it guides more backward waves than can be told from the forward ones; add loss{remedy}"
+
     def _cross(self) -> None:
         """Let the contour cross the axis where it has to, no steeper than it leaves the origin."""
         if not math.isfinite(self.found.crossing):
@@ -196,7 +206,7 @@ def _bent_solution(search: _Search) -> Solution:
             more = math.log(min(float(error.max()), 1e6) / (0.3 * rtol)) / plan.depth
             search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
     if best is None and search.found is misplaced.UNCLEAR:
-        raise ValueError("slab: it guides more backward waves than can be told from the forward ones; add loss")
+        raise ValueError(search.refusal())
     if best is None:
         raise ValueError(
             f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "

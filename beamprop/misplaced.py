@@ -25,6 +25,7 @@ from .scene import (
     nearest_branch,
     real_branches,
     up_to_wall,
+    with_loss,
 )
 from .spectral import Line
 
@@ -33,8 +34,6 @@ ON_AXIS = 1e-10
 #: A contour leaves at most so many modes on its wrong side, and the search for them takes at most so many values of D.
 MOST_WRONG = 24
 MOST_VALUES = 100_000
-#: The same for the search for a crossing, where modes may crowd at the axis.
-MOST_TO_CROSS = 400_000
 #: From how many circles on a crossing is looked for.
 FEW_CIRCLES = 3
 #: Steps along an outline, over its largest Re kx, that are not halved further: a zero lies on it.
@@ -163,6 +162,11 @@ def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]
 
 #: Among how many places, between the last branch point and the band's end, the crossing is looked for.
 PLACES = 24
+#: Relative loss with which modes are counted here, first the least. A passive slab with loss has no pole on the axis, whatever the
+#: loss: modes stay above or below it, and crowd less.
+LOSSES = (1e-8, 1e-6, 1e-5)
+#: The most values of D for one interval between two places.
+MOST_HERE = 20_000
 
 
 def _with_crossing(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles | None:
@@ -170,38 +174,53 @@ def _with_crossing(s: Scene, depth: float, band: float, start: float) -> Misplac
     edge = last_branch(s) * (1 + 1e-3)
     if band < 1.1 * edge:
         return None
-    f = dispersion_of(s, LOSS)
     places = np.geomspace(edge, band, PLACES + 1)
-    below, above = _counts(f, places, depth, band)
-    wrong = np.concatenate([[0], np.cumsum(below)]) + np.concatenate([np.cumsum(above[::-1])[::-1], [0]])
-    wrong = wrong[1:-1]  # at the inner places
-    free = below + above == 0
-    best = int(np.argmin(wrong))
-    if wrong[best] > MOST_WRONG:
-        return None
-    last = best
-    while last + 1 < wrong.size and wrong[last + 1] == wrong[best] and free[last + 1]:
-        last += 1
-    crossing, gap = _free_gap(f, float(places[best + 1]), float(places[last + 1]), depth, edge, band)
+    for loss in LOSSES:
+        f = dispersion_of(s, loss)
+        # modes left below a contour that has crossed, and above one that has not: at the places from 1 on
+        below, above = _counted(f, places, -depth, 1), _counted(f, places, depth, -1)
+        wrong = below[:-1] + above[1:]
+        if np.min(wrong) <= MOST_WRONG:
+            return _crossing_at(s, f, places, wrong, (depth, band, start))
+    return None
+
+
+def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> np.ndarray:
+    """How many modes there are from the axis to `height`, up to the end of each interval between two places.
+
+    Intervals are taken from the left (`onward` 1) or from the right (-1), until there are too many: inf from there on.
+    """
+    counts = np.full(places.size - 1, np.inf)
+    total = 0.0
+    for i in range(counts.size)[::onward]:
+        box = Box(float(places[i]), float(places[i + 1]), min(height, 0.0), max(height, 0.0))
+        try:
+            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_HERE)
+        except TooManyModes:
+            break
+        if here < 0:  # D has no poles: too few steps where modes crowd
+            break
+        total += here
+        if total > MOST_WRONG:
+            break
+        counts[i] = total
+    return counts
+
+
+def _crossing_at(
+    s: Scene, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
+) -> MisplacedPoles:
+    """The crossing in the longest run of places where the fewest are wrong, and circles around those."""
+    depth, band, start = contour
+    least = np.flatnonzero(wrong == wrong.min())
+    runs = np.split(least, np.flatnonzero(np.diff(least) > 1) + 1)
+    run = max(runs, key=lambda v: places[v[-1] + 1] / places[v[0] + 1])
+    lo, hi = float(places[run[0] + 1]), float(places[run[-1] + 1])
+    crossing, gap = _free_gap(f, lo, hi, depth, float(places[0]), band)
     known = _below(s, depth, crossing, start)
-    forward = _found_above(s, f, Box(crossing, band, 0.0, depth), int(above[last + 1 :].sum()))
+    box = Box(crossing, band, 0.0, depth)
+    forward = _found_above(s, f, box, winding(f, box.outline(48), FINEST * band, MOST_VALUES))
     return _with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
-
-
-def _counts(f: Dispersion, places: np.ndarray, depth: float, band: float) -> tuple[np.ndarray, np.ndarray]:
-    """How many modes lie below and above the axis, within `depth` of it, from each place to the next."""
-    left, right = (np.tile(v, 2) for v in (places[:-1], places[1:]))
-    zero, deep = np.zeros(places.size - 1), np.full(places.size - 1, depth)
-    paths = outlines(left, right, np.concatenate([-deep, zero]), np.concatenate([zero, deep]), 16)
-
-    def one(k: np.ndarray, _: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        value, log = f(k.ravel())
-        return value.reshape(k.shape), log.reshape(k.shape)
-
-    counts = windings(one, paths, FINEST * band, MOST_TO_CROSS)
-    if np.any(counts < 0):  # D has no poles: too few steps where zeros crowd
-        raise TooManyModes
-    return counts[: zero.size], counts[zero.size :]
 
 
 def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, band: float) -> tuple[float, float]:
@@ -224,6 +243,18 @@ def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex
     if len(found) < total:
         raise TooManyModes
     return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in found)
+
+
+#: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
+REMEDIES = 10.0 ** np.arange(-7, 0)
+
+
+def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
+    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
+    for loss in REMEDIES:
+        if misplaced(with_loss(s, float(loss)), depth, band, start) is not UNCLEAR:
+            return float(loss)
+    return None
 
 
 # --- many frequencies -------------------------------------------------------------------------------------
