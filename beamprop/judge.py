@@ -36,6 +36,7 @@ class Checks(NamedTuple):
     z: np.ndarray
     guided: bool  #: whether the transfer knows guided modes (none without a slab)
     bright: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
+    dark: np.ndarray  #: whether a plane is dark to rounding for each asked beam; (A, Z)
 
 
 class Sampled(NamedTuple):
@@ -61,6 +62,69 @@ def check_points(
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     own = centre + source * np.linspace(-1, 1, around)
     return np.concatenate([xs, own]), np.unique([*pick, *near])
+
+
+# --- dark planes ------------------------------------------------------------------------------------------
+
+#: Planes that are looked at besides: so many of the darkest for each of some beams, if they are darker by this than others within
+#: half a wavelength in front and behind.
+DARKEST, DARKER = 4, 0.3
+#: How far beside a plane it is looked whether it is brighter there, in wavelengths in front of the slab; and how much darker a
+#: plane may be before what is left on it is rounding: 1e-11 of what stands a thousandth of a wavelength beside it.
+BESIDE, LIGHTLESS = 1e-3, 1e-11
+
+
+def darkest_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
+    """Planes at nodes of standing waves: errors are over the largest |p| of each plane, so that these ask for the most.
+
+    By the strong plane waves of some of the beams: what is dark for all of them is dark for the beam (Parseval).
+    """
+    order = np.sort(z)
+    found: list[float] = []
+    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 3).round().astype(int))]
+    for angle in fan.asked[some]:
+        darker = _darkness(_strengths(fan.at(float(angle)), k0, transfer, order), order, np.pi / k0)
+        picked: list[float] = []
+        for i in np.argsort(darker, kind="stable"):
+            if darker[i] > DARKER or len(picked) == DARKEST:
+                break
+            if all(abs(order[i] - other) > 0.1 / k0 for other in picked):
+                picked.append(float(order[i]))
+        found += picked
+    return np.unique(found)
+
+
+def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
+    """Sizes on sorted planes over the largest within a window in front or behind, whichever is less: small at a node only."""
+    bins = np.floor((z - z[0]) / (window / 2)).astype(int)
+    bins = np.unique(bins, return_inverse=True)[1] if bins[-1] > 4 * z.size else bins
+    largest = np.zeros(bins[-1] + 5)
+    np.maximum.at(largest, bins + 2, size)
+    padded = np.concatenate([size[:1], size, size[-1:]])
+    front = np.max([largest[bins], largest[bins + 1], padded[:-2]], axis=0)
+    behind = np.max([largest[bins + 3], largest[bins + 4], padded[2:]], axis=0)
+    beside = np.minimum(front, behind)
+    return np.divide(size, beside, out=np.ones(size.shape), where=beside > size)
+
+
+def dark_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray, z0: float) -> np.ndarray:
+    """Whether a plane holds no more than rounding beside what stands next to it (p on a perfect wall); (A, Z)."""
+    step = BESIDE * 2 * np.pi / k0
+    near = np.concatenate([z, np.maximum(z - step, z0), z + step])
+    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 9).round().astype(int))]
+    dark = []
+    for angle in fan.asked[some]:
+        here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
+        dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
+    return _interpolated(fan.asked, fan.asked[some], np.array(dark))
+
+
+def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
+    """The largest |S h| of a beam's strong plane waves on each plane, (Z,)."""
+    k = _strong(beam, k0)
+    # even in kx; through a layer of density 0 passes kx = 0 alone
+    h = np.abs(transfer(np.maximum(np.abs(k), NEAREST * k0) + 0j, z))
+    return np.max(np.nan_to_num(h * np.abs(beam.spectrum(k, k0))), axis=1)
 
 
 def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
@@ -168,6 +232,10 @@ def _change(a: np.ndarray, b: np.ndarray) -> float:
 def _strong(beam: Beam, k0: float) -> np.ndarray:
     """A few strong plane waves of a beam that propagate, or nearly."""
     lo, hi = beam.band(k0, 0.3)
+    if not beam.entire:  # the band of a rotated beam is all that propagates: its strong part is that of its waist
+        k = np.linspace(-0.999, 0.999, 4001) * k0
+        size = np.abs(beam.spectrum(k, k0))
+        lo, hi = k[np.flatnonzero(size >= 0.3 * size.max())[[0, -1]]]
     return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
 
 
@@ -222,7 +290,7 @@ def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, 
     if checks.fan.mix is None or asked.size <= JUDGED:
         return _difference(checks, one, two)
     some = np.argsort(asked)[np.linspace(0, asked.size - 1, JUDGED).round().astype(int)]
-    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some])
+    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=checks.dark[some])
     error, edge = _difference(part, one, two)
     return -_interpolated(asked, asked[some], -error), edge
 
@@ -243,7 +311,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
     largest = np.maximum(largest, checks.bright)
-    seen = largest > DARK
+    seen = (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)
     edge = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):

@@ -61,6 +61,7 @@ class Solution(NamedTuple):
     fft: int = 0  #: FFT length if the line fits the asked even grid, else 0
     circles: bool = False  #: whether it has circles around backward modes
     amplitudes: tuple[np.ndarray, np.ndarray] | None = None  #: of the beams that it was chosen for
+    judged: np.ndarray | None = None  #: the planes on which the error was estimated
 
     def amplitudes_of(self, k0: float, fan: Fan) -> tuple[np.ndarray, np.ndarray]:
         """w S(k) and w S(-k) of the beams that are summed, about their middle: (B, n) each."""
@@ -86,9 +87,16 @@ def choose_line(
     reach = _reach(s, fan, x, z, rtol)
     many = fan.mix is not None and fan.asked.size > judge.JUDGED
     points, planes = judge.check_points(x, z, fan.beam.centre, reach.source, s.thickness, many)
+    if z.size > planes.size:
+        planes = np.union1d(planes, judge.darkest_planes(fan, s.k0, transfer, z))
     seen = judge.survey(s, fan, transfer, points, planes, reach, rtol)
-    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright)
-    if not fan.beam.entire:
+    dark = judge.dark_planes(fan, s.k0, transfer, planes, fan.beam.z0)
+    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright, dark)
+    return _chosen(s, checks, reach, seen, x, rtol)._replace(judged=planes)
+
+
+def _chosen(s: Scene, checks: Checks, reach: Reach, seen: judge.Survey, x: np.ndarray, rtol: float) -> Solution:
+    if not checks.fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol)
     search = _Search(s, checks, reach, rtol, seen)
     straight = None if search.too_wide() else _straight_solution(search, x)

@@ -153,6 +153,8 @@ def _fill_from_few(
     right, left = solution.amplitudes_of(s.k0, fan)
     strength = np.max(np.abs(right) + np.abs(left), axis=0)
     searched, tried = _some_planes(s, z)
+    if solution.judged is not None:  # among them those that are nearly dark, where small errors count
+        tried = np.union1d(tried, np.flatnonzero(np.isin(z, solution.judged)))
     if 2 * searched.size > z.size:
         return None
     h = transfer(k, z[np.concatenate([searched, tried])])

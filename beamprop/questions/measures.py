@@ -155,8 +155,8 @@ def _measure(
         return NO_BEAM, 0.0
     plane = np.array([s.thickness])
 
-    def transfer(kx: np.ndarray, _: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return face(kx * (1 + shift))[None]
+    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
 
     half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
     for _ in range(7):
