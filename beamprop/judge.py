@@ -36,7 +36,7 @@ class Checks(NamedTuple):
     z: np.ndarray
     guided: bool  #: whether the transfer knows guided modes (none without a slab)
     bright: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
-    dark: np.ndarray  #: whether a plane is dark to rounding for each asked beam; (A, Z)
+    dark: np.ndarray | None  #: whether a plane is dark to rounding for each asked beam, (A, Z); None until it matters
 
 
 class Sampled(NamedTuple):
@@ -107,16 +107,17 @@ def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
     return np.divide(size, beside, out=np.ones(size.shape), where=beside > size)
 
 
-def dark_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray, z0: float) -> np.ndarray:
-    """Whether a plane holds no more than rounding beside what stands next to it (p on a perfect wall); (A, Z)."""
+def with_dark_planes(checks: Checks) -> Checks:
+    """Tell which planes hold no more than rounding beside what stands next to them: p on a perfect wall."""
+    fan, k0, transfer, z = checks.fan, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
-    near = np.concatenate([z, np.maximum(z - step, z0), z + step])
+    near = np.concatenate([z, np.maximum(z - step, fan.beam.z0), z + step])
     some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 9).round().astype(int))]
     dark = []
     for angle in fan.asked[some]:
         here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
         dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
-    return _interpolated(fan.asked, fan.asked[some], np.array(dark))
+    return checks._replace(dark=_interpolated(fan.asked, fan.asked[some], np.array(dark)))
 
 
 def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
@@ -290,7 +291,8 @@ def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, 
     if checks.fan.mix is None or asked.size <= JUDGED:
         return _difference(checks, one, two)
     some = np.argsort(asked)[np.linspace(0, asked.size - 1, JUDGED).round().astype(int)]
-    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=checks.dark[some])
+    dark = None if checks.dark is None else checks.dark[some]
+    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=dark)
     error, edge = _difference(part, one, two)
     return -_interpolated(asked, asked[some], -error), edge
 
@@ -311,7 +313,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
     largest = np.maximum(largest, checks.bright)
-    seen = (largest > DARK) & ~checks.dark
+    seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)
     edge = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):

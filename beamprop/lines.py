@@ -90,8 +90,7 @@ def choose_line(
     if z.size > planes.size:
         planes = np.union1d(planes, judge.darkest_planes(fan, s.k0, transfer, z))
     seen = judge.survey(s, fan, transfer, points, planes, reach, rtol)
-    dark = judge.dark_planes(fan, s.k0, transfer, planes, fan.beam.z0)
-    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright, dark)
+    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright, None)
     return _chosen(s, checks, reach, seen, x, rtol)._replace(judged=planes)
 
 
@@ -147,7 +146,8 @@ class _Search:
     def refusal(self) -> str:
         """Why poles cannot be put right, and what would do."""
         start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
-        loss = misplaced.enough_loss(self.scene, 1.05 * self.plan.depth, 1.15 * self.plan.band, start)
+        plan = self._planned(math.inf)
+        loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, start)
         remedy = "" if loss is None else (
             f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
             "in every layer and half-space"
@@ -200,6 +200,9 @@ def _bent_solution(search: _Search) -> Solution:
         line, second = search.lines()
         one, two = judge.sampled(checks, line, False), judge.sampled(checks, second, True)
         error, edge = judge.difference(checks, one, two)
+        if error.max() > rtol and checks.dark is None:
+            checks = judge.with_dark_planes(checks)
+            error, edge = judge.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
             best = Solution(line, error, circles=bool(found.poles), amplitudes=one.amplitudes)
@@ -270,6 +273,9 @@ def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float) -
         lines = [spectral.propagating_line(s.k0, real_branches(s), c) for c in (count, int(1.4 * count))]
         one, two = (judge.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
         error, _ = judge.difference(checks, one, two)
+        if error.max() > rtol and checks.dark is None:
+            checks = judge.with_dark_planes(checks)
+            error, _ = judge.difference(checks, one, two)
         if error.max() <= rtol or count > MOST_MODES // 4:
             break
         count = int(1.8 * count)

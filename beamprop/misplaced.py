@@ -35,7 +35,7 @@ ON_AXIS = 1e-10
 MOST_WRONG = 24
 MOST_VALUES = 100_000
 #: From how many circles on a crossing is looked for.
-FEW_CIRCLES = 3
+FEW_CIRCLES = 8
 #: Steps along an outline, over its largest Re kx, that are not halved further: a zero lies on it.
 FINEST = 1e-12
 
@@ -164,7 +164,7 @@ def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]
 PLACES = 24
 #: Relative loss with which modes are counted here, first the least. A passive slab with loss has no pole on the axis, whatever the
 #: loss: modes stay above or below it, and crowd less.
-LOSSES = (1e-8, 1e-6, 1e-5)
+LOSSES = (1e-8, 1e-5)
 #: The most values of D for one interval between two places.
 MOST_HERE = 20_000
 
@@ -246,7 +246,7 @@ def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex
 
 
 #: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
-REMEDIES = 10.0 ** np.arange(-7, 0)
+REMEDIES = 10.0 ** np.arange(-6, 0)
 
 
 def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
