@@ -47,6 +47,8 @@ LABELS: dict[str, tuple[str, str]] = {
     "absorption": ("1", "absorbed share of the incident power"),
     "p": ("Pa", "complex sound pressure, exp(-i w t)"),
     "error_estimate": ("1", "estimated error over the largest |p| of the plane"),
+    "r_error_estimate": ("1", "estimated error of r over the larger of |r| and 1"),
+    "t_error_estimate": ("1", "estimated error of t over |t|"),
     "fwhm_launch": ("m", "full width at half maximum at the launch plane"),
     "fwhm_in": ("m", "full width at half maximum of the incident beam at the near face"),
     "fwhm_out": ("m", "full width at half maximum at the far face"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,20 @@ import xarray as xr
 
 from .. import datasets, modes, response, roots
 from ..conventions import outgoing_kz
-from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, materials, slab_values
 from ..scene import scene
 from . import checks
 
 
-def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, angle: Any = None) -> xr.Dataset:
+def scattering(
+    slab: Slab,
+    frequency: Any,
+    *,
+    kx: Any = None,
+    kx_over_k0: Any = None,
+    angle: Any = None,
+    estimate: bool = True,
+) -> xr.Dataset:
     """Exact reflection and transmission of plane waves by a slab.
 
     Parameters
@@ -24,6 +33,10 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     kx, kx_over_k0, angle : float or 1-D array
         One of: lateral wavenumber [rad/m] (may be complex: continued as a small loss would, see
         `conventions.outgoing_kz`), the same over that of ``slab.before``, or angle of incidence [degree].
+    estimate : bool
+        Estimate what rounding does, by a second evaluation with the last bits of kx and layers moved, and answer by a more
+        robust form where it does much (near-perfect lenses, surfaces of negative density). False: half the time, no estimate,
+        and at such places digits may be lost without a warning.
 
     Returns
     -------
@@ -31,7 +44,13 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
         On (frequency, the one given): complex `r`, `t`; `transmissivity` = \\|t\\|^2 and `reflectivity` = \\|r\\|^2 (the paper's
         pressure ratios, for evanescent waves too); `energy_transmission` = \\|t\\|^2 Re(kz_after/rho_after) /
         Re(kz_before/rho_before) and `absorption` = 1 - reflectivity - energy_transmission, nan unless the incident
-        wave propagates in a lossless `before`.
+        wave propagates in a lossless `before`. With `estimate` also `r_error_estimate`, the error of r over the larger of \\|r\\|
+        and 1 (the incident wave), `t_error_estimate`, that of t over \\|t\\|, and `error_estimate`, the larger of both.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6: near a guided mode or a sharp resonance the last bits of kx and of the layers decide.
 
     Raises
     ------
@@ -45,7 +64,7 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
     before, after = slab.before.at(flat), slab.after.at(flat)
     omega = 2 * np.pi * flat[:, None]
-    res = response.solve(slab_values(slab, flat), before, after, omega, k)
+    res, errors = _solved(slab, flat, omega, k, estimate)
     if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
         raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
     reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
@@ -58,10 +77,43 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
         "reflectivity": reflectivity,
         "energy_transmission": energy,
         "absorption": absorption,
+        **errors,
     }
+    if errors:
+        _warn_of(errors["error_estimate"], flat, name, np.atleast_1d(axis))
     coords = checks.coords(frequency=f, **{name: axis})
     coords |= _other_coords(slab, name, k, flat, dims, pick)
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
+
+
+def _solved(
+    slab: Slab, frequency: np.ndarray, omega: np.ndarray, kx: np.ndarray, estimate: bool
+) -> tuple[response.Response | response.Checked, dict[str, np.ndarray]]:
+    """r and t, and the variables that tell their errors."""
+    values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
+    if not estimate:
+        return response.solve(values, before, after, omega, kx), {}
+    rows = [materials(cell, frequency) for cell, _ in slab.segments]
+    res = response.solve_checked(values, rows, before, after, omega, kx)
+    errors = {"r_error_estimate": res.r_error, "t_error_estimate": res.t_error}
+    return res, errors | {"error_estimate": np.maximum(res.r_error, res.t_error)}
+
+
+#: Relative errors of plane waves from which on a warning is due.
+WORTH_A_WARNING = 1e-6
+
+
+def _warn_of(error: np.ndarray, frequency: np.ndarray, name: str, axis: np.ndarray) -> None:
+    """A warning with the largest of errors (F, n) and where it is, if it is large."""
+    i, j = np.unravel_index(np.argmax(error), error.shape)
+    if error[i, j] > WORTH_A_WARNING:
+        warnings.warn(
+            f"estimated error {error[i, j]:.1e} (relative) at {frequency[i]:.8g} Hz, {name} {axis[j]:.8g}, and above "
+            f"{WORTH_A_WARNING:.0e} at {np.count_nonzero(error > WORTH_A_WARNING)} of {error.size} places: "
+            "the last bits of the input decide there",
+            checks.AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _energies(
