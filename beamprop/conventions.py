@@ -46,7 +46,7 @@ LABELS: dict[str, tuple[str, str]] = {
     "energy_transmission": ("1", "transmitted share of the incident power"),
     "absorption": ("1", "absorbed share of the incident power"),
     "p": ("Pa", "complex sound pressure, exp(-i w t)"),
-    "error_estimate": ("1", "estimated error over the largest |p| of the plane"),
+    "error_estimate": ("1", "estimated relative error: of a field, over the largest |p| of the plane"),
     "r_error_estimate": ("1", "estimated error of r over the larger of |r| and 1"),
     "t_error_estimate": ("1", "estimated error of t over |t|"),
     "fwhm_launch": ("m", "full width at half maximum at the launch plane"),

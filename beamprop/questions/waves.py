@@ -144,7 +144,15 @@ def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, d
     return others
 
 
-def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, background: Fluid = AIR) -> xr.Dataset:
+def bloch(
+    cell: Cell,
+    frequency: Any,
+    *,
+    kx: Any = None,
+    kx_over_k0: Any = None,
+    background: Fluid = AIR,
+    estimate: bool = True,
+) -> xr.Dataset:
     """Bloch wavenumber of an infinite stack of a cell: its equifrequency contour.
 
     Parameters
@@ -155,13 +163,21 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
         One of: lateral wavenumber [rad/m], or the same over the wavenumber k0 of `background`.
     background : Fluid
         Whose wavenumber is k0.
+    estimate : bool
+        Estimate what rounding does, by a second evaluation with the last bits of kx and layers moved.
 
     Returns
     -------
     Dataset
         On (frequency, the one given): complex `kz` [rad/m] and `kz_over_k0`. Im(kz) >= 0: the wave that decays, or
         where none does carries energy, along +z; the real part is continuous in kx, in the first zone at the kx
-        nearest to 0. -kz belongs to the contour too.
+        nearest to 0. -kz belongs to the contour too. With `estimate` also `error_estimate`, the error of kz over the larger
+        of \\|kz\\| and k0: at a band edge kz is a square root, and known to half the digits.
+
+    Warns
+    -----
+    AccuracyWarning
+        The estimated error is above 1e-6.
 
     Raises
     ------
@@ -181,10 +197,15 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
         raise ValueError(
             "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"
         )
-    kz = response.bloch_wavenumber(layers, 2 * np.pi * flat[:, None], k.astype(complex))
+    omega, k = 2 * np.pi * flat[:, None], k.astype(complex)
+    kz = response.bloch_wavenumber(layers, omega, k)
     k0 = checks.forward_k0(background, flat, "background")
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
+    if estimate:
+        error = response.bloch_error(layers, omega, k) / np.maximum(np.abs(kz), k0[:, None])
+        _warn_of(error, flat, name, np.atleast_1d(axis))
+        variables["error_estimate"] = error
     coords = checks.coords(frequency=f, **{name: axis})
     return datasets.make(
         {n: (dims, v[pick]) for n, v in variables.items()}, coords, "bloch", flat, cell=cell, background=background
@@ -209,9 +230,15 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     -------
     Dataset
         On (frequency, mode), by growing Re kx: complex `kx` [rad/m] and `kx_over_k0`; `direction` +1 where energy flows along
-        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`. nan and
-        0 where a frequency has fewer modes than another; `count`, on (frequency), is how many the argument principle
-        counts.
+        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`, the
+        last step of Newton's method over kx; `error_estimate`, how far a mode moves, over kx, with the last bits of the
+        layers (modes that are nearly one feel their square root). nan and 0 where a frequency has fewer modes than another;
+        `count`, on (frequency), is how many the argument principle counts.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6.
 
     Raises
     ------
@@ -226,10 +253,12 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     found = [_modes_at(slab, float(g), highest, strip) for g in flat]
     most = max(len(rows) for rows, _ in found)
     kx = np.full((flat.size, most), complex(np.nan, np.nan))
-    direction, residual = np.zeros(kx.shape, int), np.full(kx.shape, np.nan)
+    direction, (residual, error) = np.zeros(kx.shape, int), np.full((2, *kx.shape), np.nan)
     for i, (rows, _) in enumerate(found):
         for j, mode in enumerate(rows):
-            kx[i, j], direction[i, j], residual[i, j] = mode
+            kx[i, j], direction[i, j], residual[i, j], error[i, j] = mode
+    if most:
+        _warn_of(np.nan_to_num(error, nan=0.0), flat, "mode", np.arange(most))
     k0 = slab.before.wavenumber(flat).real
     dims, pick = (("frequency",), ...) if f.ndim else ((), 0)
     both = (*dims, "mode")
@@ -238,6 +267,7 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
         "kx_over_k0": (both, (kx / k0[:, None])[pick]),
         "direction": (both, direction[pick]),
         "residual": (both, residual[pick]),
+        "error_estimate": (both, error[pick]),
         "count": (dims, np.array([total for _, total in found])[pick]),
     }
     coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
@@ -260,6 +290,11 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
     except roots.TooManyModes:
         raise ValueError(
             f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"
+        ) from None
+    except roots.UncertainCount as counts:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip in which modes can be counted, got {counts} modes at {frequency} Hz; "
+            "one may lie on the edge of the strip: change it a little"
         ) from None
     if len(found) != total:
         raise ValueError(

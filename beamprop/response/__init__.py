@@ -16,8 +16,9 @@ slab.py: what is asked of a slab. waves.py: r and t from the waves of each mediu
 accuracy.py: r and t with estimated errors. bloch.py: infinite stacks.
 """
 
-from .accuracy import Checked, solve_checked
-from .bloch import bloch_wavenumber
+from .accuracy import SHIFT, Checked, solve_checked
+from .bloch import bloch_error, bloch_wavenumber
+from .layers import perturbed
 from .slab import Response, dispersion, solve
 
-__all__ = ["Checked", "Response", "bloch_wavenumber", "dispersion", "solve", "solve_checked"]
+__all__ = ["SHIFT", "Checked", "Response", "bloch_error", "bloch_wavenumber", "dispersion", "perturbed", "solve", "solve_checked"]
