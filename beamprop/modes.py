@@ -14,7 +14,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .response import SHIFT, dispersion, perturbed
-from .roots import CLUSTER, Box, Dispersion, TooManyModes, UncertainCount, outlines, real_zeros, refine, winding, windings, zeros
+from .roots import (
+    CLUSTER,
+    Box,
+    Dispersion,
+    TooManyModes,
+    UncertainCount,
+    outlines,
+    real_zeros,
+    refine,
+    winding,
+    windings,
+    zeros,
+)
 from .scene import Scene, at_frequency
 from .spectral import Line
 

@@ -21,4 +21,14 @@ from .bloch import bloch_error, bloch_wavenumber
 from .layers import perturbed
 from .slab import Response, dispersion, solve
 
-__all__ = ["SHIFT", "Checked", "Response", "bloch_error", "bloch_wavenumber", "dispersion", "perturbed", "solve", "solve_checked"]
+__all__ = [
+    "SHIFT",
+    "Checked",
+    "Response",
+    "bloch_error",
+    "bloch_wavenumber",
+    "dispersion",
+    "perturbed",
+    "solve",
+    "solve_checked",
+]

@@ -54,8 +54,15 @@ def solve_checked(
         for i in np.flatnonzero(np.any(doubtful, axis=-1)):
             part = [s._replace(layers=at_frequencies(s.layers, slice(i, i + 1))) for s in segments]
             rows = [m._replace(fluid=FluidValues(*(v[:, i : i + 1] for v in m.fluid))) for m in materials]
-            ends = (FluidValues(*(v[i : i + 1] for v in f)) for f in (before, after))
-            _by_waves(out, Stack(part, rows, *ends, float(omega[i, 0])), kx, moved, int(i), np.flatnonzero(doubtful[i]))
+            front, behind = (FluidValues(*(v[i : i + 1] for v in f)) for f in (before, after))
+            _by_waves(
+                out,
+                Stack(part, rows, front, behind, float(omega[i, 0])),
+                kx,
+                moved,
+                int(i),
+                np.flatnonzero(doubtful[i]),
+            )
     return _with_rounding(out)
 
 

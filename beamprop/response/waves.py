@@ -127,9 +127,7 @@ def _half_space(fluid: FluidValues, omega: float, kx: np.ndarray) -> Medium:
     return Medium(wave, -wave, np.zeros(kx.shape, complex), fluid)
 
 
-def _uniform(
-    fluid: FluidValues, thickness: float, omega: float, kx: np.ndarray, turns: Iterator[complex]
-) -> Medium:
+def _uniform(fluid: FluidValues, thickness: float, omega: float, kx: np.ndarray, turns: Iterator[complex]) -> Medium:
     rho_z, rho_x, K = fluid
     kz = np.sqrt(rho_z * (omega * omega / K - kx * kx * _inverse(rho_x)))
     kz = np.where(kz.imag < 0, -kz, kz)
@@ -190,9 +188,7 @@ def _sum_and_difference(
     # a turn takes i Y to its square: (i S)(i D) = -(Y^2 - Y'^2)
     larger = np.where(np.abs(plus) < np.abs(minus), minus, plus)
     smaller = np.where(product == 0, 0.0, -product / np.where(larger == 0, 1.0, larger))
-    return np.where(np.abs(plus) < np.abs(minus), smaller, plus), np.where(
-        np.abs(plus) < np.abs(minus), minus, smaller
-    )
+    return np.where(np.abs(plus) < np.abs(minus), smaller, plus), np.where(np.abs(plus) < np.abs(minus), minus, smaller)
 
 
 def _squares_differ(near: FluidValues, far: FluidValues, omega: float, kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
