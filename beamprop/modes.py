@@ -98,17 +98,17 @@ def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
     if total != again or len(on_axis) > total:
         raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
     found = _located(s, box, total) if total > 0 else []
-    modes = [_checked(s, f, m) for m in _told(s, found)]
+    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in _told(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
 
 
-def _checked(s: Scene, f: Dispersion, mode: Mode) -> Mode:
-    """A mode with its residual, and with how far it moves when the layers' last bits do."""
+def _checked(s: Scene, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
+    """A mode with its residual, and with how far it moves when the layers' last bits do; of a cluster only the middle is known."""
     size = abs(mode.kx)
     residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
     moved = s._replace(segments=[perturbed(segment, SHIFT) for segment in s.segments])
     k, step = refine(dispersion_of(moved), mode.kx, 1e-3 * size)
-    error = (abs(k - mode.kx) + step) / size
+    error = max((abs(k - mode.kx) + step) / size, CLUSTER if cluster else 0.0)
     return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
 
 

@@ -112,4 +112,5 @@ def _by_waves(out: Checked, stack: Stack, kx: np.ndarray, moved: np.ndarray, i: 
         old[i, at[better]] = new[better]
     for old, own, difference in zip((out.r_error, out.t_error), errors, apart, strict=True):
         # what is kept is as wrong as it differs from the other form, less what that one may be wrong by itself
-        old[i, at] = np.where(better, own, np.fmax(old[i, at], difference - own))
+        own = np.minimum(own, 1e300)
+        old[i, at] = np.where(better, own, np.maximum(old[i, at], np.where(own < 1, difference - own, 0.0)))

@@ -17,10 +17,15 @@ def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> 
     ratio = (np.exp(1j * phase - (0.0 if m.growth is None else m.growth)) - m.a - m.e11) / np.where(
         m.e12 == 0, 1, m.e12
     )
-    neither = np.abs(phase.imag) <= 1e-11 * (1 + np.abs(phase))
+    neither = _undamped(phase)
     phase = np.where(neither, phase.real + 0j, phase)  # rounding decides nothing
     phase = np.where(neither & ((ratio / 1j).real < 0), -phase, phase)
     return _unwrapped(phase, kx.real) / layers.thickness.sum()
+
+
+def _undamped(phase: np.ndarray) -> np.ndarray:
+    """Where a phase has an imaginary part that may be rounding: it is left out."""
+    return np.abs(phase.imag) <= 1e-11 * (1 + np.abs(phase))
 
 
 def bloch_error(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
@@ -32,7 +37,8 @@ def bloch_error(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> np.nd
     one = bloch_phase(cell_matrix(layers, omega, kx)).phase
     two = bloch_phase(cell_matrix(moved, omega, kx * (1 + SHIFT * np.exp(0.7j)))).phase
     change = np.minimum(*(np.abs(_without_turns(one - way * two)) for way in (1, -1)))
-    error = (change + ROUNDING * np.abs(one)) / layers.thickness.sum()
+    left_out = np.where(_undamped(one), np.abs(one.imag), 0.0)
+    error = (change + left_out + ROUNDING * np.abs(one)) / layers.thickness.sum()
     return np.where(np.isfinite(error), error, np.inf)
 
 
