@@ -48,7 +48,7 @@ def windings(
     count, n = paths.shape
     onward = np.arange(1, n + 1) % n
     ahead = paths[:, onward]
-    beside = RATE * (ahead - paths)
+    beside = FINE * (ahead - paths)
     some = slice(None, None, 1 if thorough else SPARSE)
     most -= paths.size
     if most < 0:
@@ -78,11 +78,13 @@ def windings(
         steps = _halved(f, steps, ~calm, count == 1)
 
 
-#: Of so many points of a path one is looked at for how fast D turns, and this change of log D over a step is fast.
-SPARSE, FAST = 4, 2.5
-#: D'/D on a path is taken over this share of a step: where D turns by less than 100 in a step the share shows no whole turns, and
-#: rounding is magnified 32 times only, which circles close around a cluster of zeros feel.
-RATE = 1 / 32
+#: Of so many points of a path one is looked at for how fast D turns, and this change of log D over a step is fast: less is no whole turn.
+SPARSE, FAST = 4, 4.0
+#: D'/D is taken over these shares of a step. The fine one shows no whole turns where D turns by less than 1600 in a step (a path's
+#: first steps), the coarse one magnifies rounding less, which small circles close around a cluster of zeros feel.
+FINE, COARSE = 1 / 512, 1 / 32
+#: Change of log D over a step, by D'/D, from which on its halves take the fine share.
+WILD = 20
 
 
 class _Steps(NamedTuple):
@@ -114,14 +116,16 @@ def _halved(f: ManyDispersions, steps: _Steps, some: np.ndarray, alone: bool) ->
     (a, m, b), (at_a, at_m, at_b) = ([v[some] for v in group] for group in steps[1:3])
     start, stop = np.concatenate([a, m]), np.concatenate([m, b])
     owner, middle = np.tile(steps.owner[some], 2), (start + stop) / 2
-    beside = RATE * (b - m)
-    more = m.size if steps.rates else 0  # points just behind the middles, which start the second halves
+    beside, more = COARSE * (b - m), 0
+    if steps.rates:  # points just behind the middles, which start the second halves
+        rate_a, rate_b = (rate[some] for rate in steps.rates)
+        wild = np.maximum(np.abs(rate_a), np.abs(rate_b)) * np.abs(b - a) > WILD
+        beside, more = np.where(wild, FINE / COARSE, 1.0) * beside, m.size
     ask, whose = np.concatenate([middle, (m + beside)[:more]]), np.concatenate([owner, owner[:more]])
     rows = (ask[None], whose[:1]) if alone else (ask[:, None], whose)
     values = logarithm(*f(*rows)).ravel()
     rates: tuple[np.ndarray, ...] = ()
     if more:
-        rate_a, rate_b = (rate[some] for rate in steps.rates)
         rate_m = _rate(at_m, values[middle.size :], beside)
         rates = (np.concatenate([rate_a, rate_m]), np.concatenate([rate_m, rate_b]))
     logs = (np.concatenate([at_a, at_m]), values[: middle.size], np.concatenate([at_m, at_b]))

@@ -47,8 +47,8 @@ def test_a_perfect_lens_at_evanescent_waves(delta):
 @pytest.mark.parametrize(
     ("layers", "periods"),
     [
-        (lens(1e-9) + [(RHO, BULK, LAMBDA / 5)], 4),  # lenses in turn
-        (lens(0.0) + [(2 * RHO, BULK, LAMBDA / 9), *lens(1e-5)], 1),
+        ([*lens(1e-09), (RHO, BULK, LAMBDA / 5)], 4),  # lenses in turn
+        ([*lens(0.0), (2 * RHO, BULK, LAMBDA / 9), *lens(1e-05)], 1),
         ([(-RHO, -BULK, LAMBDA / 500)], 100),  # a lens of a hundred thin layers
         ([(-RHO * (1 + 1e-9), -BULK, LAMBDA / 500), (-RHO, -BULK * (1 + 1e-10), LAMBDA / 300)], 60),
         ([(-RHO * (1 - 1e-5j), BULK, LAMBDA / 4), (-RHO, -BULK, LAMBDA / 6)], 3),  # an opaque mirror at a lens
