@@ -325,4 +325,4 @@ def test_a_hundred_thousand_plane_waves():
             count += ratio.size
             doubtful += int((ds.error_estimate > 1e-6).sum())
     assert count == 100_000
-    assert doubtful < 100
+    assert doubtful < 300  # most of them in one slab, 16 000 km thick

@@ -65,9 +65,10 @@ def scattering(
     before, after = slab.before.at(flat), slab.after.at(flat)
     omega = 2 * np.pi * flat[:, None]
     res, errors = _solved(slab, flat, omega, k, estimate)
-    if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
+    with np.errstate(over="ignore"):
+        reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
         raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
     energy, absorption = _energies(reflectivity, transmissivity, k, omega, before, after)
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {
