@@ -418,8 +418,19 @@ class SegmentValues(NamedTuple):
 TINY_DENSITY = 1e-40
 
 
-def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
-    """The bridge: a cell's layers as arrays at frequencies [Hz] (1-D)."""
+class Materials(NamedTuple):
+    """The layers of a cell as their materials at F frequencies: what differences between neighbours are formed from.
+
+    `fluid` arrays (N, F); a membrane has its areal density [kg/m2] for rho_z.
+    """
+
+    fluid: FluidValues
+    thickness: np.ndarray  # (N,)
+    membrane: np.ndarray  # (N,)
+
+
+def materials(cell: Cell, frequency: np.ndarray) -> Materials:
+    """A cell's layers as materials at frequencies [Hz] (1-D)."""
     seen: dict[Fluid, FluidValues] = {}
     rows = []
     for layer in cell.layers:
@@ -431,14 +442,20 @@ def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
         if layer.fluid not in seen:
             seen[layer.fluid] = layer.fluid.at(frequency)
         rows.append(seen[layer.fluid])
-    rho_z, rho_x, K = (np.stack(column) for column in zip(*rows, strict=True))
+    fluid = FluidValues(*(np.stack(column) for column in zip(*rows, strict=True)))
+    thickness = np.array([layer.thickness for layer in cell.layers])
+    return Materials(fluid, thickness, np.array([isinstance(layer, Membrane) for layer in cell.layers]))
+
+
+def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
+    """The bridge: a cell's layers as arrays at frequencies [Hz] (1-D)."""
+    (rho_z, rho_x, K), thickness, membrane = materials(cell, frequency)
     vanishing = (rho_z == 0) & (rho_x == 0)
     if vanishing.any():
         rho_z, rho_x = (np.where(vanishing, TINY_DENSITY, rho) for rho in (rho_z, rho_x))
     mobility = np.divide(1, rho_x, out=np.zeros(rho_x.shape, complex), where=np.isfinite(rho_x))
-    thickness = np.array([layer.thickness for layer in cell.layers])
     d = thickness[:, None]
-    mass = rho_z * np.where([[isinstance(layer, Membrane)] for layer in cell.layers], 1.0, d)
+    mass = rho_z * np.where(membrane[:, None], 1.0, d)
     return LayerValues(mass, d / K, mobility * d, thickness, vanishing)
 
 

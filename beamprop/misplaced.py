@@ -195,7 +195,7 @@ def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> n
     for i in range(counts.size)[::onward]:
         box = Box(float(places[i]), float(places[i + 1]), min(height, 0.0), max(height, 0.0))
         try:
-            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_HERE)
+            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_HERE, thorough=True)
         except TooManyModes:
             break
         if here < 0:  # D has no poles: too few steps where modes crowd
@@ -219,7 +219,8 @@ def _crossing_at(
     crossing, gap = _free_gap(f, lo, hi, depth, float(places[0]), band)
     known = _below(s, depth, crossing, start)
     box = Box(crossing, band, 0.0, depth)
-    forward = _found_above(s, f, box, winding(f, box.outline(48), FINEST * band, MOST_VALUES))
+    total = winding(f, box.outline(48), FINEST * band, MOST_VALUES, thorough=True)
+    forward = _found_above(s, f, box, total)
     return _with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
 
 

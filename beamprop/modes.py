@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .response import dispersion
-from .roots import Box, Dispersion, TooManyModes, real_zeros, refine, winding, zeros
+from .response import SHIFT, dispersion, perturbed
+from .roots import CLUSTER, Box, Dispersion, TooManyModes, UncertainCount, real_zeros, refine, winding, zeros
 from .scene import Scene, is_lossless, with_loss
 
 #: Relative loss by which modes are told apart: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, for a slab
@@ -24,11 +24,12 @@ BESIDE = 1e-8
 
 
 class Mode(NamedTuple):
-    """One zero: kx [rad/m], +1 forward or -1 backward, and the last step of its refinement over kx."""
+    """One zero: kx [rad/m], +1 forward or -1 backward, the last step of its refinement and its estimated error, over kx."""
 
     kx: complex
     direction: int
     residual: float
+    error: float = 0.0
 
 
 def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
@@ -43,12 +44,28 @@ def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
 
 
 def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
-    """All modes in a box, and how many the argument principle counts."""
+    """All modes in a box, and how many the argument principle counts.
+
+    UncertainCount where outlines of other nodes, or changes of sign of a lossless slab, say otherwise.
+    """
     f = dispersion_of(s)
-    total = winding(f, box.outline(48), 1e-9 * box.right)
+    total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, thorough=True) for nodes in (48, 61))
+    on_axis = real_zeros(f, box.left, box.right) if is_lossless(s) and box.low < 0 < box.high else []
+    if total != again or len(on_axis) > total:
+        raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
     found = located(s, box, total) if total > 0 else []
-    modes = [m._replace(residual=refine(f, m.kx, 1e-3 * abs(m.kx), 2)[1] / abs(m.kx)) for m in told(s, found)]
+    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in told(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
+
+
+def _checked(s: Scene, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
+    """A mode with its residual, and with how far it moves when the layers' last bits do; of a cluster only the middle is known."""
+    size = abs(mode.kx)
+    residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
+    moved = s._replace(segments=[perturbed(segment, SHIFT) for segment in s.segments])
+    k, step = refine(dispersion_of(moved), mode.kx, 1e-3 * size)
+    error = max((abs(k - mode.kx) + step) / size, CLUSTER if cluster else 0.0)
+    return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
 
 
 def located(s: Scene, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:

@@ -21,52 +21,115 @@ class TooManyModes(ArithmeticError):
     """A search that would take too long."""
 
 
-def winding(f: Dispersion, path: np.ndarray, finest: float, most: float = math.inf) -> int:
+class UncertainCount(ArithmeticError):
+    """Two counts of the same zeros that differ."""
+
+
+def winding(f: Dispersion, path: np.ndarray, finest: float, most: float = math.inf, thorough: bool = False) -> int:
     """Turns of D about 0 along a closed path."""
 
     def one(k: np.ndarray, _: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         value, log = f(k.ravel())
         return value.reshape(k.shape), log.reshape(k.shape)
 
-    return int(windings(one, path[None], finest, most)[0])
+    return int(windings(one, path[None], finest, most, thorough)[0])
 
 
-def windings(f: ManyDispersions, paths: np.ndarray, finest: float, most: float = math.inf) -> np.ndarray:
+def windings(
+    f: ManyDispersions, paths: np.ndarray, finest: float, most: float = math.inf, thorough: bool = False
+) -> np.ndarray:
     """Turns of several D about 0, each along its own closed path: paths (P, n), turns (P,).
 
-    A step is halved until both halves change log D by little and alike; steps shorter than `finest` are left alone (a zero
-    lies on the path). TooManyModes where that takes more than `most` values of D.
+    A step is halved until both halves change log D by little and alike, and as D'/D at either end says: whole turns between two
+    points do not show in D itself, and a slab of many waves' thickness makes many. Steps shorter than `finest` are left alone (a
+    zero lies on the path). D'/D is taken everywhere if `thorough`, or if it is large at one of every SPARSE points: that sees
+    slabs that turn fast all along, and zeros that crowd. TooManyModes where that takes more than `most` steps.
     """
     count, n = paths.shape
     onward = np.arange(1, n + 1) % n
     ahead = paths[:, onward]
-    middles = (paths + ahead) / 2
-    most -= middles.size
+    beside = FINE * (ahead - paths)
+    some = slice(None, None, 1 if thorough else SPARSE)
+    most -= paths.size
     if most < 0:
         raise TooManyModes
-    # the path's points and the middles of its steps in one call
-    values = logarithm(*f(np.concatenate([paths, middles], axis=1), np.arange(count)))
-    points = (paths, middles, ahead)
-    logs = (values[:, :n], values[:, n:], values[:, onward])
-    owner = np.broadcast_to(np.arange(count)[:, None], paths.shape)
+    # the path's points, the middles of its steps and points just behind some of the first in one call
+    ask = np.concatenate([paths, (paths + ahead) / 2, (paths + beside)[:, some]], axis=1)
+    values = logarithm(*f(ask, np.arange(count)))
+    logs = values[:, :n]
+    rates = _rate(logs[:, some], values[:, 2 * n :], beside[:, some])
+    if not thorough and (thorough := bool(np.any(np.abs(rates * (ahead - paths)[:, some]) > FAST))):
+        rates = _rate(logs, logarithm(*f(paths + beside, np.arange(count))), beside)
+    steps = _Steps(
+        np.broadcast_to(np.arange(count)[:, None], paths.shape),
+        (paths, ask[:, n : 2 * n], ahead),
+        (logs, values[:, n : 2 * n], logs[:, onward]),
+        (rates, rates[:, onward]) if thorough else (),
+    )
     total = np.zeros(count)
     while True:
-        first, second = _change(logs[0], logs[1]), _change(logs[1], logs[2])
-        calm = (np.abs(first + second) < 1.5) & (np.abs(first - second) < 0.4)
-        calm |= np.abs(points[2] - points[0]) < finest
-        total += np.bincount(owner[calm], (first + second).imag[calm], count)
+        calm, change = _calm(steps, finest)
+        total += np.bincount(steps.owner[calm], change.imag[calm], count)
         if np.all(calm):
             return np.rint(total / (2 * np.pi)).astype(int)
-        again = ~calm
-        (a, m, b), (at_a, at_m, at_b) = ([v[again] for v in triple] for triple in (points, logs))
-        start, stop = np.concatenate([a, m]), np.concatenate([m, b])
-        owner, middle = np.tile(owner[again], 2), (start + stop) / 2
-        most -= middle.size
+        most -= 2 * np.count_nonzero(~calm)
         if most < 0:
             raise TooManyModes
-        rows = (middle[None], owner[:1]) if count == 1 else (middle[:, None], owner)
-        points = (start, middle, stop)
-        logs = (np.concatenate([at_a, at_m]), logarithm(*f(*rows)).ravel(), np.concatenate([at_m, at_b]))
+        steps = _halved(f, steps, ~calm, count == 1)
+
+
+#: Of so many points of a path one is looked at for how fast D turns, and this change of log D over a step is fast: less is no whole turn.
+SPARSE, FAST = 4, 4.0
+#: D'/D is taken over these shares of a step. The fine one shows no whole turns where D turns by less than 1600 in a step (a path's
+#: first steps), the coarse one magnifies rounding less, which small circles close around a cluster of zeros feel.
+FINE, COARSE = 1 / 512, 1 / 32
+#: Change of log D over a step, by D'/D, from which on its halves take the fine share.
+WILD = 20
+
+
+class _Steps(NamedTuple):
+    """Steps of paths: whose they are, start, middle and end, log D there, and D'/D at start and end (or nothing)."""
+
+    owner: np.ndarray
+    points: tuple[np.ndarray, ...]
+    logs: tuple[np.ndarray, ...]
+    rates: tuple[np.ndarray, ...]
+
+
+def _rate(at: np.ndarray, beyond: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """D'/D from log D at two points; 0 where they are the same."""
+    return np.divide(_change(at, beyond), distance, out=np.zeros(at.shape, complex), where=distance != 0)
+
+
+def _calm(steps: _Steps, finest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Which steps may stay as they are, and the change of log D over each."""
+    first, second = _change(steps.logs[0], steps.logs[1]), _change(steps.logs[1], steps.logs[2])
+    change, length = first + second, steps.points[2] - steps.points[0]
+    calm = (np.abs(change) < 1.5) & (np.abs(first - second) < 0.4)
+    for rate in steps.rates:
+        calm &= np.abs(rate * length - change) < 1.5
+    return calm | (np.abs(length) < finest), change
+
+
+def _halved(f: ManyDispersions, steps: _Steps, some: np.ndarray, alone: bool) -> _Steps:
+    """Both halves of some steps."""
+    (a, m, b), (at_a, at_m, at_b) = ([v[some] for v in group] for group in steps[1:3])
+    start, stop = np.concatenate([a, m]), np.concatenate([m, b])
+    owner, middle = np.tile(steps.owner[some], 2), (start + stop) / 2
+    beside, more = COARSE * (b - m), 0
+    if steps.rates:  # points just behind the middles, which start the second halves
+        rate_a, rate_b = (rate[some] for rate in steps.rates)
+        wild = np.maximum(np.abs(rate_a), np.abs(rate_b)) * np.abs(b - a) > WILD
+        beside, more = np.where(wild, FINE / COARSE, 1.0) * beside, m.size
+    ask, whose = np.concatenate([middle, (m + beside)[:more]]), np.concatenate([owner, owner[:more]])
+    rows = (ask[None], whose[:1]) if alone else (ask[:, None], whose)
+    values = logarithm(*f(*rows)).ravel()
+    rates: tuple[np.ndarray, ...] = ()
+    if more:
+        rate_m = _rate(at_m, values[middle.size :], beside)
+        rates = (np.concatenate([rate_a, rate_m]), np.concatenate([rate_m, rate_b]))
+    logs = (np.concatenate([at_a, at_m]), values[: middle.size], np.concatenate([at_m, at_b]))
+    return _Steps(owner, (start, middle, stop), logs, rates)
 
 
 def logarithm(value: np.ndarray, log: np.ndarray) -> np.ndarray:
@@ -179,7 +242,7 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
                 found += count * [next((other for other in found if abs(k - other) < CLUSTER * abs(k)), k)]
                 continue
         for half in part.halves():
-            inside = winding(f, half.outline(), 1e-9 * scale, most)
+            inside = winding(f, half.outline(), 1e-9 * scale, most, thorough=math.isinf(most))
             outlines += 1
             if outlines > most / 200:
                 raise TooManyModes
@@ -222,5 +285,10 @@ def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600, man
     at = np.flatnonzero(sign[1:] != sign[:-1])
     if at.size > many:
         raise TooManyModes
-    found = (refine(f, complex(k[i] + k[i + 1]) / 2, (k[i + 1] - k[i]) / 2) for i in at)
-    return [complex(k.real) for k, step in found if step < 1e-9 * right and abs(k.imag) < 1e-9 * right]
+    found = ((i, *refine(f, complex(k[i] + k[i + 1]) / 2, (k[i + 1] - k[i]) / 2)) for i in at)
+    # one that has left its interval is its neighbour's
+    return [
+        complex(zero.real)
+        for i, zero, step in found
+        if step < 1e-9 * right and abs(zero.imag) < 1e-9 * right and k[i] <= zero.real <= k[i + 1]
+    ]

@@ -42,7 +42,9 @@ def slab_response(layers, periods, before, after, frequency, kx, digits=50):
 
     before, after: (density, bulk_modulus). Working precision grows with the opacity, so that `digits` are left.
     """
-    estimate = sum(abs(complex(kx)) * d for _, _, d in layers) * periods + 30 * np.sqrt(periods)
+    own = [2 * np.pi * float(frequency) * abs(complex(rho) / complex(K)) ** 0.5 for rho, K, _ in layers]
+    depth = sum((abs(complex(kx)) + k) * d for k, (_, _, d) in zip(own, layers, strict=True))
+    estimate = depth * periods + 30 * np.sqrt(periods)
     with mp.workdps(int(digits + 20 + estimate)):
         w, k = 2 * mp.pi * mp.mpf(frequency), mp.mpmathify(kx)
         # the package works in double precision from w = 2 pi f on; its rounding is part of the input
@@ -60,6 +62,16 @@ def slab_response(layers, periods, before, after, frequency, kx, digits=50):
         r = -(a + b * y1) / (a - b * y1)
         t = 2 * y1 / (y2 * m[0, 0] * 1 - m[1, 0] + y1 * (m[1, 1] - y2 * m[0, 1]))  # det m = 1
         return r, t
+
+
+def bloch_phase(layers, frequency, kx, digits=60):
+    """acos(trace/2) of a cell of [(density, bulk_modulus, thickness), ...], with 0 <= Re <= pi."""
+    with mp.workdps(digits):
+        w, k = mp.mpf(2 * np.pi * float(frequency)), mp.mpmathify(kx)
+        m = mp.eye(2)
+        for rho, K, d in layers:
+            m = _mp_layer(mp.mpmathify(rho), mp.mpmathify(K), mp.mpf(d), w, k) * m
+        return mp.acos((m[0, 0] + m[1, 1]) / 2)
 
 
 def emt_transmissivity(rho_eff, thickness, k0, kx):

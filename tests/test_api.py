@@ -97,7 +97,8 @@ def test_scattering_dimensions(frequency, name, value):
     """Scalars are scalar coordinates, arrays are dimensions; kx and kx_over_k0 ride along."""
     ds = bp.scattering(SLAB, frequency, **{name: value})
     want = sizes(frequency=frequency, **{name: value})
-    assert set(ds.data_vars) == {"r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption"}
+    answers = {"r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption"}
+    assert set(ds.data_vars) == answers | {"error_estimate", "r_error_estimate", "t_error_estimate"}
     for v in ds.data_vars.values():
         assert dict(v.sizes) == want
         assert list(v.dims) == [d for d in ("frequency", name) if d in want]
@@ -128,7 +129,7 @@ def test_scattering_values():
 def test_bloch_dimensions(frequency, name, value):
     """kz and kz_over_k0 on (frequency, the one given)."""
     ds = bp.bloch(CELL, frequency, **{name: value})
-    assert set(ds.data_vars) == {"kz", "kz_over_k0"}
+    assert set(ds.data_vars) == {"kz", "kz_over_k0", "error_estimate"}
     assert dict(ds.kz.sizes) == sizes(frequency=frequency, **{name: value})
     k0 = 2 * np.pi * ds.frequency / 343
     np.testing.assert_allclose(*xr.broadcast(ds.kz / k0, ds.kz_over_k0), rtol=1e-13)

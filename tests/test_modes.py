@@ -39,7 +39,8 @@ def test_twenty_lossless_periods_guide_a_mode():
     slab = bp.Slab(bp.lmmd_cell(0.05, 0.0), 20)
     (mode,) = bp.guided_modes(slab, F).kx_over_k0.values
     assert mode == pytest.approx(1.598146, abs=1e-6)
-    near = bp.scattering(slab, F, kx_over_k0=np.array([mode.real - 1e-5, mode.real, mode.real + 1e-5])).t.values
+    with pytest.warns(bp.AccuracyWarning, match="1 of 3 places"):  # on the pole itself rounding decides
+        near = bp.scattering(slab, F, kx_over_k0=np.array([mode.real - 1e-5, mode.real, mode.real + 1e-5])).t.values
     assert abs(near[1]) > 1e3 * abs(near[0])
     assert near[0].real * near[2].real < 0 or near[0].imag * near[2].imag < 0
 

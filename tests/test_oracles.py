@@ -1,5 +1,7 @@
 """The package against the independent implementations of oracles.py."""
 
+import warnings
+
 import mpmath as mp
 import numpy as np
 import oracles
@@ -59,7 +61,9 @@ def test_r_and_t_against_fifty_digits(case):
     slab = bp.Slab(cell, case["periods"], before, after)
     kx = case["ratio"] * 2 * np.pi * case["frequency"] / 343
     f = case["frequency"]
-    ds = bp.scattering(slab, f, kx=kx)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", bp.AccuracyWarning)  # what is ill-conditioned is allowed for below
+        ds = bp.scattering(slab, f, kx=kx)
     ends = [(v.density, v.bulk_modulus) for v in (before, after)]
     r, t = oracles.slab_response(layers_of(cell), case["periods"], *ends, f, kx)
     others = [oracles.slab_response(nudged(layers_of(cell)), case["periods"], *ends, f, kx)]
@@ -69,7 +73,9 @@ def test_r_and_t_against_fifty_digits(case):
     for i, (got, want) in enumerate(((ds.r.item(), r), (ds.t.item(), t))):
         if abs(want) > 1e-250:
             allowed = max(1e-9, *(100 * float(abs((other[i] - want) / want)) for other in others))
-            assert float(abs((mp.mpmathify(got) - want) / want)) < allowed
+            error = float(abs((mp.mpmathify(got) - want) / want))
+            assert error < allowed
+            assert i == 0 or error < 3 * ds.t_error_estimate
         else:
             assert abs(got) < 1e-249
 

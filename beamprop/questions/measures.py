@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.integrate import simpson
 
 from .. import datasets, lines, propagate, spectral, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
 from ..fan import single
-from ..media import FluidValues, Slab
+from ..media import FluidValues, Slab, as_number
 from ..response import solve
 from ..scene import Scene, real_branches, scene
 from . import checks
@@ -22,6 +23,10 @@ from .checks import Progress
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
 TAIL = 0.01
+#: So often the window is doubled to get there; guided waves of a lossless slab run along for ever.
+DOUBLINGS = 6
+#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
+FINER = 8
 SIDES = ("reflected", "transmitted")
 
 
@@ -38,10 +43,19 @@ class Beamlet(NamedTuple):
     divergence: float
     far_angle: float
     crossings: int
+    moments_from: float
+    moments_to: float
+    rim: float
 
 
 def beam_measures(
-    slab: Slab, beam: Beam, frequency: Any, angle: Any = None, rtol: float = 1e-6, progress: Progress = iter
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    angle: Any = None,
+    rtol: float = 1e-6,
+    progress: Progress = iter,
+    window: float | None = None,
 ) -> xr.Dataset:
     """The reflected beam at the near face and the transmitted beam at the far face, measured.
 
@@ -56,6 +70,11 @@ def beam_measures(
         Asked error of the fields over their largest |p|.
     progress : function
         Wraps the list of (frequency, angle) pairs that is worked through.
+    window : float, optional, m
+        Half-width of a window about the geometric ray of each side: everything on x is measured in it, and moments are
+        integrals over all of it. For slabs without loss, whose guided waves run along for ever: without them the centroid is
+        that of the beam alone, with them it depends on how far one looks. By default the window is widened until |p| falls
+        to a hundredth of its peak on both sides.
 
     Returns
     -------
@@ -64,7 +83,10 @@ def beam_measures(
 
         * `fwhm`, `width_1e2` [m]: between the places nearest to the peak where |p| is half, |p|^2 is 1/e^2 of the largest;
         * `width_second_moment` (four standard deviations of |p|^2; 2 a of a Gaussian of 1/e radius a) and `centroid` [m],
-          inside the part around the peak where |p| exceeds a hundredth of it;
+          inside the part around the peak where |p| exceeds a hundredth of it, or inside the whole window if one is given or
+          |p| does not fall so far;
+        * `moments_from`, `moments_to` [m]: the interval over which these were taken, and `rim`, the larger |p| at its ends over
+          the peak: a hundredth or less, unless the beam is cut off there;
         * `lateral_shift` [m]: centroid less the geometric ray: for the reflected beam the ray that meets the near face (the
           Goos-Haenchen shift), for the transmitted one the same ray carried straight on to the far face;
         * `peak` [Pa]; `power`: radiated share of the launched power (plane waves that propagate; evanescent and guided
@@ -75,7 +97,8 @@ def beam_measures(
     Warns
     -----
     RuntimeWarning
-        A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice.
+        A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice; |p|
+        does not fall to a hundredth in the widest window that is tried, and none was given.
     AccuracyWarning
         The estimated error of a beam's |p| is above rtol.
     """
@@ -83,29 +106,38 @@ def beam_measures(
     checks.instance(beam, Beam, "beam")
     f = checks.axis(frequency, "frequency", positive=True)
     angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    half = None if window is None else as_number(window, "window", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
     worst = 0.0
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
         s = scene(slab, float(flat[i]))
-        for side, (beamlet, error) in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol)):
+        for side, (beamlet, error) in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol, half)):
             worst = max(worst, error)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     checks.announce(worst, rtol)
-    _announce(table)
+    _announce(table, window is not None)
     dims, pick = checks.dims(frequency=f, angle=angles)
     coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
     variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
     variables["crossings"] = (variables["crossings"][0], variables["crossings"][1].astype(int))
-    return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=rtol)
+    return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=rtol, window=half)
 
 
-def _announce(table: dict[str, np.ndarray]) -> None:
+def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
     missing = [name for name, values in table.items() if np.any(np.isnan(values))]
     if missing:
         warnings.warn(
             f"no beam on a side, or a level not reached inside the window: nan in {', '.join(missing)}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+    rim = float(np.max(np.nan_to_num(table["rim"], nan=0.0)))
+    if rim > TAIL and not chosen:
+        warnings.warn(
+            f"|p| falls to {rim:.2g} of its peak only, in the widest window tried: centroid, lateral_shift and second moment "
+            "are those of moments_from to moments_to; choose a window",
             RuntimeWarning,
             stacklevel=3,
         )
@@ -118,7 +150,7 @@ def _announce(table: dict[str, np.ndarray]) -> None:
         )
 
 
-def _both(s: Scene, beam: Beam, rtol: float) -> list[tuple[Beamlet, float]]:
+def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float]]:
     """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
@@ -128,7 +160,7 @@ def _both(s: Scene, beam: Beam, rtol: float) -> list[tuple[Beamlet, float]]:
         (_reflected(s, beam.z0), ray, s.before),
         (_transmitted(s, beam.z0), ray + s.thickness * slope, s.after),
     ):
-        out.append(_measure(s, beam, transfer, place, fluid, launched, rtol))
+        out.append(_measure(s, beam, transfer, place, fluid, launched, rtol, window))
     return out
 
 
@@ -149,7 +181,7 @@ def _transmitted(s: Scene, z0: float) -> Face:
 
 
 def _measure(
-    s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float
+    s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float, window: float | None
 ) -> tuple[Beamlet, float]:
     if not _any_beam(s, beam, face):
         return NO_BEAM, 0.0
@@ -158,20 +190,17 @@ def _measure(
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
         return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
 
-    half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
-    for _ in range(7):
-        x = beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
+    for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
             break
-        half *= 2
     between = _between(s, beam, solution.line, h)
     full = widths.full_width(x, p, 0.5, between)
     e2 = widths.full_width(x, p, math.exp(-1), between)
-    centroid, spread = _moments(x, size)
+    centroid, spread, part = _moments(x, size, window is not None)
     power, mean, deviation = _power(s, beam, face, fluid, _far_k(s, fluid))
     crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
     beamlet = Beamlet(
@@ -185,13 +214,16 @@ def _measure(
         2 * deviation,
         mean,
         crossings,
+        float(x[part][0]),
+        float(x[part][-1]),
+        float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
     )
     return beamlet, float(solution.error[0])
 
 
 #: What is said of a side without a beam.
 _NAN = math.nan
-NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0)
+NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
 
 
 def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
@@ -205,23 +237,38 @@ def _between(s: Scene, beam: Beam, line: spectral.Line, h: np.ndarray) -> widths
     return lambda at: propagate.point_sum(s, beam, line, h, at)[0]
 
 
+def _windows(s: Scene, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:
+    """Positions of the window that is asked for, or of wider and wider ones."""
+    if window is not None:
+        yield ray + window * np.linspace(-1, 1, FINER * (_samples(s, beam, window) - 1) + 1)
+        return
+    half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
+    for _ in range(DOUBLINGS + 1):
+        yield beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
+        half *= 2
+
+
 def _samples(s: Scene, beam: Beam, half: float) -> int:
     finest = max(abs(k) for k in beam.band(s.k0, 1e-3))
     return 2 * int(min(max(64, math.ceil(2 * half * finest / np.pi)), 40_000)) + 1
 
 
-def _moments(x: np.ndarray, size: np.ndarray) -> tuple[float, float]:
-    """Centroid and standard deviation of |p|^2 where it is connected to the peak above the tail; nan if that is cut off."""
+def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float, slice]:
+    """Centroid and standard deviation of |p|^2, and where they are taken.
+
+    That is where |p| is connected to the peak above the tail, or the `whole` window if asked for or if the tail is cut off.
+    """
     top = int(np.argmax(size))
     below = np.flatnonzero(size < TAIL * size[top])
     left, right = below[below < top], below[below > top]
-    if left.size == 0 or right.size == 0:
-        return math.nan, math.nan
-    part = slice(left[-1], right[0] + 1)
+    part = slice(None) if whole or left.size == 0 or right.size == 0 else slice(left[-1], right[0] + 1)
     x, weight = x[part], size[part] ** 2
-    total = np.trapezoid(weight, x)
-    centre = np.trapezoid(weight * x, x) / total
-    return float(centre), float(np.sqrt(np.trapezoid(weight * (x - centre) ** 2, x) / total))
+    integral = simpson if whole else np.trapezoid  # samples of a beam that ends inside are best summed alike
+    total = integral(weight, x=x)
+    if not total > 0:
+        return math.nan, math.nan, part
+    centre = integral(weight * x, x=x) / total
+    return float(centre), float(np.sqrt(integral(weight * (x - centre) ** 2, x=x) / total)), part
 
 
 def _far_k(s: Scene, fluid: FluidValues) -> float:

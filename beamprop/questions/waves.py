@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -9,12 +10,20 @@ import xarray as xr
 
 from .. import datasets, modes, response, roots
 from ..conventions import outgoing_kz
-from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, materials, slab_values
 from ..scene import last_branch, scene
 from . import checks
 
 
-def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, angle: Any = None) -> xr.Dataset:
+def scattering(
+    slab: Slab,
+    frequency: Any,
+    *,
+    kx: Any = None,
+    kx_over_k0: Any = None,
+    angle: Any = None,
+    estimate: bool = True,
+) -> xr.Dataset:
     """Exact reflection and transmission of plane waves by a slab.
 
     Parameters
@@ -24,6 +33,10 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     kx, kx_over_k0, angle : float or 1-D array
         One of: lateral wavenumber [rad/m] (may be complex: continued as a small loss would, see
         `conventions.outgoing_kz`), the same over that of ``slab.before``, or angle of incidence [degree].
+    estimate : bool
+        Estimate what rounding does, by a second evaluation with the last bits of kx and layers moved, and answer by a more
+        robust form where it does much (near-perfect lenses, surfaces of negative density). False: half the time, no estimate,
+        and at such places digits may be lost without a warning.
 
     Returns
     -------
@@ -31,7 +44,13 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
         On (frequency, the one given): complex `r`, `t`; `transmissivity` = \\|t\\|^2 and `reflectivity` = \\|r\\|^2 (the paper's
         pressure ratios, for evanescent waves too); `energy_transmission` = \\|t\\|^2 Re(kz_after/rho_after) /
         Re(kz_before/rho_before) and `absorption` = 1 - reflectivity - energy_transmission, nan unless the incident
-        wave propagates in a lossless `before`.
+        wave propagates in a lossless `before`. With `estimate` also `r_error_estimate`, the error of r over the larger of \\|r\\|
+        and 1 (the incident wave), `t_error_estimate`, that of t over \\|t\\|, and `error_estimate`, the larger of both.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6: near a guided mode or a sharp resonance the last bits of kx and of the layers decide.
 
     Raises
     ------
@@ -45,10 +64,11 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
     before, after = slab.before.at(flat), slab.after.at(flat)
     omega = 2 * np.pi * flat[:, None]
-    res = response.solve(slab_values(slab, flat), before, after, omega, k)
-    if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
+    res, errors = _solved(slab, flat, omega, k, estimate)
+    with np.errstate(over="ignore"):
+        reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
         raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
     energy, absorption = _energies(reflectivity, transmissivity, k, omega, before, after)
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {
@@ -58,10 +78,43 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
         "reflectivity": reflectivity,
         "energy_transmission": energy,
         "absorption": absorption,
+        **errors,
     }
+    if errors:
+        _warn_of(errors["error_estimate"], flat, name, np.atleast_1d(axis))
     coords = checks.coords(frequency=f, **{name: axis})
     coords |= _other_coords(slab, name, k, flat, dims, pick)
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
+
+
+def _solved(
+    slab: Slab, frequency: np.ndarray, omega: np.ndarray, kx: np.ndarray, estimate: bool
+) -> tuple[response.Response | response.Checked, dict[str, np.ndarray]]:
+    """r and t, and the variables that tell their errors."""
+    values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
+    if not estimate:
+        return response.solve(values, before, after, omega, kx), {}
+    rows = [materials(cell, frequency) for cell, _ in slab.segments]
+    res = response.solve_checked(values, rows, before, after, omega, kx)
+    errors = {"r_error_estimate": res.r_error, "t_error_estimate": res.t_error}
+    return res, errors | {"error_estimate": np.maximum(res.r_error, res.t_error)}
+
+
+#: Relative errors of plane waves from which on a warning is due.
+WORTH_A_WARNING = 1e-6
+
+
+def _warn_of(error: np.ndarray, frequency: np.ndarray, name: str, axis: np.ndarray) -> None:
+    """A warning with the largest of errors (F, n) and where it is, if it is large."""
+    i, j = np.unravel_index(np.argmax(error), error.shape)
+    if error[i, j] > WORTH_A_WARNING:
+        warnings.warn(
+            f"estimated error {error[i, j]:.1e} (relative) at {frequency[i]:.8g} Hz, {name} {axis[j]:.8g}, and above "
+            f"{WORTH_A_WARNING:.0e} at {np.count_nonzero(error > WORTH_A_WARNING)} of {error.size} places: "
+            "the last bits of the input decide there",
+            checks.AccuracyWarning,
+            stacklevel=3,
+        )
 
 
 def _energies(
@@ -92,7 +145,15 @@ def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, d
     return others
 
 
-def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None, background: Fluid = AIR) -> xr.Dataset:
+def bloch(
+    cell: Cell,
+    frequency: Any,
+    *,
+    kx: Any = None,
+    kx_over_k0: Any = None,
+    background: Fluid = AIR,
+    estimate: bool = True,
+) -> xr.Dataset:
     """Bloch wavenumber of an infinite stack of a cell: its equifrequency contour.
 
     Parameters
@@ -103,13 +164,21 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
         One of: lateral wavenumber [rad/m], or the same over the wavenumber k0 of `background`.
     background : Fluid
         Whose wavenumber is k0.
+    estimate : bool
+        Estimate what rounding does, by a second evaluation with the last bits of kx and layers moved.
 
     Returns
     -------
     Dataset
         On (frequency, the one given): complex `kz` [rad/m] and `kz_over_k0`. Im(kz) >= 0: the wave that decays, or
         where none does carries energy, along +z; the real part is continuous in kx, in the first zone at the kx
-        nearest to 0. -kz belongs to the contour too.
+        nearest to 0. -kz belongs to the contour too. With `estimate` also `error_estimate`, the error of kz over the larger
+        of \\|kz\\| and k0: at a band edge kz is a square root, and known to half the digits.
+
+    Warns
+    -----
+    AccuracyWarning
+        The estimated error is above 1e-6.
 
     Raises
     ------
@@ -129,10 +198,15 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
         raise ValueError(
             "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"
         )
-    kz = response.bloch_wavenumber(layers, 2 * np.pi * flat[:, None], k.astype(complex))
+    omega, k = 2 * np.pi * flat[:, None], k.astype(complex)
+    kz = response.bloch_wavenumber(layers, omega, k)
     k0 = checks.forward_k0(background, flat, "background")
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
+    if estimate:
+        error = response.bloch_error(layers, omega, k) / np.maximum(np.abs(kz), k0[:, None])
+        _warn_of(error, flat, name, np.atleast_1d(axis))
+        variables["error_estimate"] = error
     coords = checks.coords(frequency=f, **{name: axis})
     return datasets.make(
         {n: (dims, v[pick]) for n, v in variables.items()}, coords, "bloch", flat, cell=cell, background=background
@@ -157,9 +231,15 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     -------
     Dataset
         On (frequency, mode), by growing Re kx: complex `kx` [rad/m] and `kx_over_k0`; `direction` +1 where energy flows along
-        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`. nan and
-        0 where a frequency has fewer modes than another; `count`, on (frequency), is how many the argument principle
-        counts.
+        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`, the
+        last step of Newton's method over kx; `error_estimate`, how far a mode moves, over kx, with the last bits of the
+        layers (modes that are nearly one feel their square root). nan and 0 where a frequency has fewer modes than another;
+        `count`, on (frequency), is how many the argument principle counts.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6.
 
     Raises
     ------
@@ -174,10 +254,12 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     found = [_modes_at(slab, float(g), highest, strip) for g in flat]
     most = max(len(rows) for rows, _ in found)
     kx = np.full((flat.size, most), complex(np.nan, np.nan))
-    direction, residual = np.zeros(kx.shape, int), np.full(kx.shape, np.nan)
+    direction, (residual, error) = np.zeros(kx.shape, int), np.full((2, *kx.shape), np.nan)
     for i, (rows, _) in enumerate(found):
         for j, mode in enumerate(rows):
-            kx[i, j], direction[i, j], residual[i, j] = mode
+            kx[i, j], direction[i, j], residual[i, j], error[i, j] = mode
+    if most:
+        _warn_of(np.nan_to_num(error, nan=0.0), flat, "mode", np.arange(most))
     k0 = slab.before.wavenumber(flat).real
     dims, pick = (("frequency",), ...) if f.ndim else ((), 0)
     both = (*dims, "mode")
@@ -186,6 +268,7 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
         "kx_over_k0": (both, (kx / k0[:, None])[pick]),
         "direction": (both, direction[pick]),
         "residual": (both, residual[pick]),
+        "error_estimate": (both, error[pick]),
         "count": (dims, np.array([total for _, total in found])[pick]),
     }
     coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
@@ -208,6 +291,11 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
     except roots.TooManyModes:
         raise ValueError(
             f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"
+        ) from None
+    except roots.UncertainCount as counts:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip in which modes can be counted, got {counts} modes at {frequency} Hz; "
+            "one may lie on the edge of the strip: change it a little"
         ) from None
     if len(found) != total:
         raise ValueError(

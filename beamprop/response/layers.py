@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media import LayerValues
+from ..media import LayerValues, SegmentValues
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
 SCALE_FROM = 30.0
@@ -119,3 +119,16 @@ def at_frequencies(layers: LayerValues, rows: slice) -> LayerValues:
         v[:, rows] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
     )
     return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
+
+
+def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:
+    """Each layer's mass, compliance and mobility moved by `shift` (relative) in any direction of the complex plane.
+
+    Directions, not signs: real changes of several properties cancel now and then, complex ones hardly ever.
+    """
+    layers = segment.layers
+    turn = np.exp(2j * np.pi * np.random.default_rng(0).random((3, len(layers.thickness), 1)))
+    mass, compliance, mobility = (
+        v * (1 + shift * c) for v, c in zip((layers.mass, layers.compliance, layers.mobility), turn, strict=True)
+    )
+    return segment._replace(layers=layers._replace(mass=mass, compliance=compliance, mobility=mobility))
