@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import lines, modes, propagate, spectral, transfers
+from . import fft, lines, modes, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
@@ -192,13 +192,13 @@ def _sampled(modal: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
     """p on an even grid over each whole window: x and p, (F, n)."""
     line = modal.line
     m = line.first + np.arange(line.k.shape[-1])
-    n = spectral.fast_length(3 * int(np.max(np.abs(m))) + 1)
+    n = fft.fast_length(3 * int(np.max(np.abs(m))) + 1)
     x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
     bins = np.zeros((2, *line.k.shape[:-1], n), complex)
     turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
     bins[0][:, m % n] = modal.right * turn
     bins[1][:, -m % n] = modal.left * np.conj(turn)
-    right, left = spectral.transform(bins)
+    right, left = fft.transform(bins)
     grow = np.exp(line.sigma[:, None] * x)
     return x, right * grow + left / grow
 

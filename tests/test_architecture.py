@@ -22,6 +22,7 @@ ORDER = [
     "response",
     "beam",
     "widths",
+    "fft",
     "spectral",
     "scene",
     "roots",
@@ -51,7 +52,8 @@ ORDER = [
 ONLY = {
     "conventions": set(),
     "widths": set(),
-    "spectral": {"products"},
+    "fft": set(),
+    "spectral": {"products", "fft"},
     "roots": set(),
     "media": {"conventions"},
     "homogenize": {"conventions", "media"},
@@ -130,16 +132,16 @@ def test_the_checker_sees_imports():
         *map(own_imports, files_of("questions"))
     )
     assert {"homogenize", "storage", "questions", "plot"} <= set().union(*map(own_imports, files_of("cli")))
-    assert "pyfftw" in set().union(*map(other_imports, files_of("spectral")))
+    assert "pyfftw" in set().union(*map(other_imports, files_of("fft")))
     assert len(FILES) >= 18
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_one_user_of_fft_libraries(module):
-    """spectral alone imports pyfftw or scipy.fft."""
+    """fft alone imports pyfftw or scipy.fft."""
     for path in files_of(module):
         fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
-        assert not fft or module == "spectral"
+        assert not fft or module == "fft"
 
 
 def makes_datasets(path):
@@ -172,7 +174,8 @@ def test_one_branch_of_the_square_root():
 
 
 @pytest.mark.parametrize(
-    "module", ["conventions", "media", "homogenize", "response", "beam", "widths", "spectral", "lines", "propagate"]
+    "module",
+    ["conventions", "media", "homogenize", "response", "beam", "widths", "fft", "spectral", "lines", "propagate"],
 )
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""
