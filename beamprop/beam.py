@@ -13,7 +13,8 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from .media import as_count, as_number
+from . import validate
+from .validate import as_count, as_number
 
 _B = TypeVar("_B", bound="_Tilted")
 
@@ -50,9 +51,7 @@ class Beam(Protocol):
 
 
 def _check_launch(angle: Any, z0: Any) -> tuple[float, float]:
-    angle, z0 = as_number(angle, "angle"), as_number(z0, "z0")
-    if abs(angle) >= 90:
-        raise ValueError(f"angle: expected degrees from the normal, between -90 and 90, got {angle!r}")
+    angle, z0 = validate.angle(angle), as_number(z0, "z0")
     if z0 > 0:
         raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {z0!r}")
     return angle, z0
@@ -123,10 +122,8 @@ class GaussianBeam(_Tilted):
         object.__setattr__(self, "x0", as_number(self.x0, "x0"))
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
-        if self.width_of not in ("pressure", "intensity"):
-            raise ValueError(f"width_of: expected 'pressure' or 'intensity', got {self.width_of!r}")
-        if self.form not in ("launch", "rotated"):
-            raise ValueError(f"form: expected 'launch' or 'rotated', got {self.form!r}")
+        validate.word(self.width_of, "width_of", "pressure", "intensity")
+        validate.word(self.form, "form", "launch", "rotated")
 
     @property
     def radius(self) -> float:
@@ -187,13 +184,6 @@ class GaussianBeam(_Tilted):
         return middle - half, middle + half
 
 
-def _numbers(values: Any, kind: type, name: str) -> np.ndarray:
-    try:
-        return np.array(values, dtype=kind)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected an array of numbers, got {values!r}") from None
-
-
 def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """sum_j weights_j exp(-i k x_j), shaped like k and then like weights_j, in blocks of bounded memory."""
     k = np.asarray(k)
@@ -233,13 +223,12 @@ class Profile(_Tilted):
     def __post_init__(self) -> None:
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
-        x, p = _numbers(self.x, float, "x"), _numbers(self.p, complex, "p")
-        if x.ndim != 1 or x.size < 2:
+        x, p = validate.positions(self.x, "x", increasing=True), validate.numeric(self.p, "p").astype(complex)
+        if x.size < 2:
             raise ValueError(f"x: expected a 1-D array of at least 2 positions, got shape {x.shape}")
         if p.shape != x.shape:
             raise ValueError(f"p: expected an array of x's shape {x.shape}, got {p.shape}")
-        if not np.all(np.isfinite(x)) or not np.all(np.diff(x) > 0):
-            raise ValueError("x: expected finite, strictly increasing positions")
+        validate.within(p, "p", zero=True)
         if not np.all(np.isfinite(p)):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
@@ -275,6 +264,8 @@ class Profile(_Tilted):
         ValueError
             Names the file, and the line that is no row of numbers.
         """
+        path = validate.as_path(path)
+        validate.flag(conjugate, "conjugate")
         rows: list[list[float]] = []
         with open(path, encoding="utf-8-sig") as lines:
             for number, line in enumerate(lines, 1):

@@ -16,6 +16,7 @@ CHECKOUT = Path(__file__).parent.parent
 ORDER = [
     "_version",
     "conventions",
+    "validate",
     "media",
     "homogenize",
     "products",
@@ -51,19 +52,20 @@ ORDER = [
 #: Those that see less than all that stands before them.
 ONLY = {
     "conventions": set(),
+    "validate": set(),
     "widths": set(),
     "fft": set(),
     "spectral": {"products", "fft"},
     "roots": set(),
-    "media": {"conventions"},
-    "homogenize": {"conventions", "media"},
+    "media": {"conventions", "validate"},
+    "homogenize": {"conventions", "validate", "media"},
     "response": {"conventions", "media", "products"},
-    "beam": {"conventions", "media"},
-    "fem": {"conventions", "media", "beam", "datasets"},
-    "comsol": {"conventions", "datasets"},
-    "storage": {"conventions", "datasets"},
-    "_plot_comparison": {"conventions"},
-    "plot": {"conventions", "_plot_comparison"},
+    "beam": {"conventions", "validate", "media"},
+    "fem": {"conventions", "validate", "media", "beam", "datasets"},
+    "comsol": {"conventions", "validate", "datasets"},
+    "storage": {"conventions", "validate", "datasets"},
+    "_plot_comparison": {"conventions", "validate"},
+    "plot": {"conventions", "validate", "_plot_comparison"},
 }
 
 

@@ -17,12 +17,13 @@ names the file, the line, what was expected and what came.
 from __future__ import annotations
 
 import warnings
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from .. import validate
 from .assemble import make_dataset
 from .forms import READERS, SECTION
 from .text import ANGLES, LENGTHS, PRESSURE_UNITS, length_factor, plain_unit, scan
@@ -75,7 +76,7 @@ def read_comsol(
         Combinations of parameters that are missing (NaN in the dataset), and everything that had to be assumed.
     """
     _check_arguments(x, z, expression, conjugate, length_unit, angle_unit)
-    source = scan(fspath(path))
+    source = scan(str(validate.as_path(path)))
     factor = length_factor(source, length_unit)
     kinds = [m[1].lower() for _, text in source.header if (m := SECTION.fullmatch(text))]
     table = READERS.get(kinds[0] if kinds else "", READERS["spreadsheet"])(source, factor)
@@ -101,7 +102,7 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     """
     if not isinstance(ds, xr.Dataset) or "node" not in ds.dims:
         raise ValueError(f"ds: expected a dataset with the dim 'node', got {getattr(ds, 'dims', type(ds).__name__)}")
-    axes = {"x": axis(x, "x"), "z": axis(z, "z")}
+    axes = {name: validate.positions(v, name, increasing=True) for name, v in (("x", x), ("z", z))}
     from scipy.interpolate import LinearNDInterpolator
     from scipy.spatial import Delaunay
 
@@ -120,21 +121,12 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     return out
 
 
-def axis(values: Any, name: str) -> np.ndarray:
-    """A strictly increasing 1-D axis, or a ValueError that names the argument."""
-    values = np.asarray(values, dtype=float)
-    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or np.any(np.diff(values) <= 0):
-        raise ValueError(f"{name}: expected a 1-D array of finite, strictly increasing positions, got {values!r}")
-    return values
-
-
 def _check_arguments(x: Any, z: Any, expression: Any, conjugate: Any, length_unit: Any, angle_unit: Any) -> None:
     names = {"x": x, "z": z, "expression": expression, "length_unit": length_unit, "angle_unit": angle_unit}
     for name, value in names.items():
         if value is not None and not (isinstance(value, str) and value.strip()):
-            raise ValueError(f"{name}: expected a name, got {value!r}")
-    if not isinstance(conjugate, bool | np.bool_):
-        raise ValueError(f"conjugate: expected True or False, got {conjugate!r}")
+            raise validate.refuse(name, "a name", value)
+    validate.flag(conjugate, "conjugate")
     if x is not None and x == z:
         raise ValueError(f"z: expected another coordinate than x, got {z!r} for both")
     for name, table in (("length_unit", LENGTHS), ("angle_unit", ANGLES)):

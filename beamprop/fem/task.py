@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import validate
 from ..beam import Beam
-from ..media import Slab, as_count, as_number
+from ..media import Slab
+from ..validate import as_count, as_number
 from . import boundary, solvers, strip
 
 #: An order this share of the mesh's highest or lower is resolved as well as the errors of
@@ -53,12 +55,9 @@ class Task:
 
 
 def _check(slab: Any, beam: Any, frequency: Any, period: Any, order: Any, method: Any) -> tuple[float, float, int]:
-    if not isinstance(slab, Slab):
-        raise ValueError(f"slab: expected a Slab, got {slab!r}")
-    if not isinstance(beam, Beam):
-        raise ValueError(f"beam: expected a beam such as GaussianBeam, got {beam!r}")
-    if method not in solvers.SOLVERS:
-        raise ValueError(f"method: expected 'superelement' or 'sparse', got {method!r}")
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    validate.word(method, "method", *solvers.SOLVERS)
     order = as_count(order, "order")
     if order not in strip.SIZE_OVER_WAVELENGTH:
         raise ValueError(f"order: expected 1, 2, 3 or 4, got {order}")

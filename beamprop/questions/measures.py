@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from .. import datasets, lines, propagate, spectral, widths
+from .. import datasets, lines, propagate, spectral, validate, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
 from ..fan import single
@@ -79,10 +79,11 @@ def beam_measures(
     AccuracyWarning
         The estimated error of a beam's |p| is above rtol.
     """
-    checks.instance(slab, Slab, "slab")
-    checks.instance(beam, Beam, "beam")
-    f = checks.axis(frequency, "frequency", positive=True)
-    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    validate.function(progress, "progress")
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
     worst = 0.0

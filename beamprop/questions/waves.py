@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, modes, response, roots
+from .. import datasets, modes, response, roots, validate
 from ..conventions import outgoing_kz
-from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, slab_values
+from ..media import AIR, Cell, Fluid, Slab, layer_values, slab_values
 from ..scene import scene
 from . import checks
 
@@ -38,8 +38,8 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     ValueError
         Names the argument, what was expected and what came.
     """
-    checks.instance(slab, Slab, "slab")
-    f = checks.axis(frequency, "frequency", positive=True)
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
@@ -116,9 +116,9 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
     ValueError
         Also for a cell with a layer of isotropic density 0 and kx other than 0: no finite limit.
     """
-    checks.instance(cell, Cell, "cell")
-    checks.instance(background, Fluid, "background")
-    f = checks.axis(frequency, "frequency", positive=True)
+    validate.instance(cell, Cell, "cell")
+    validate.instance(background, Fluid, "background")
+    f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat)
@@ -166,10 +166,10 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     ValueError
         Wrong arguments, a layer of density 0, or modes that were counted and not found.
     """
-    checks.instance(slab, Slab, "slab")
-    f = checks.axis(frequency, "frequency", positive=True)
-    highest = as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
-    strip = as_number(strip_over_k0, "strip_over_k0", positive=True)
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
+    highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
+    strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
     flat = np.atleast_1d(f)
     found = [_modes_at(slab, float(g), highest, strip) for g in flat]
     most = max(len(rows) for rows, _ in found)

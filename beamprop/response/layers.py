@@ -59,6 +59,10 @@ def entire(u: np.ndarray) -> Entire:
     size = float(np.max(np.abs(u), initial=0.0))
     if size < 1.0:
         return _series(u, size)
+    if not math.isfinite(size):
+        raise ValueError(
+            f"slab: expected layers whose phase squared, rho_z d^2 (w^2/K - kx^2/rho_x), is a finite number, got {size}"
+        )
     w = np.sqrt(u)
     safe = np.where(np.abs(w) < 1e-4, 1.0, w)
     steep = np.abs(w.imag)
