@@ -13,7 +13,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from . import validate
+from . import memory, validate
 from .validate import as_count, as_number
 
 _B = TypeVar("_B", bound="_Tilted")
@@ -237,7 +237,9 @@ class Profile(_Tilted):
         if np.ptp(steps) > 1e-6 * steps.min():
             from scipy.interpolate import CubicSpline
 
-            even = np.linspace(x[0], x[-1], round((x[-1] - x[0]) / steps.min()) + 1)
+            count = float((x[-1] - x[0]) / steps.min()) + 1
+            memory.check("x", 200.0 * count, f"{count:.3g} even steps as small as the least", "space x more evenly")
+            even = np.linspace(x[0], x[-1], round(count))
             x, p = even, CubicSpline(x, p)(even)
         for key, array in (("x", x), ("p", p)):
             array.setflags(write=False)
@@ -339,8 +341,12 @@ class Profile(_Tilted):
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""
         x = np.asarray(x, dtype=float)
-        p = np.sinc((x[..., None] - self.x) / self.spacing) @ self.p
-        return p * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
+        p, flat = np.empty(x.size, complex), x.ravel()
+        block = max(1, 2_000_000 // self.x.size)
+        for start in range(0, x.size, block):
+            part = slice(start, start + block)
+            p[part] = np.sinc((flat[part, None] - self.x) / self.spacing) @ self.p
+        return p.reshape(x.shape) * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
 
     def reach(self, tolerance: float) -> float:
         """Half the sampled interval [m]."""
@@ -375,6 +381,7 @@ class Slits(_Tilted):
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", as_number(self.width, "width", positive=True))
         object.__setattr__(self, "count", as_count(self.count, "count"))
+        memory.check("count", 50.0 * self.count, f"{self.count:.3g} slits", "take fewer")
         object.__setattr__(self, "separation", as_number(self.separation, "separation", positive=True))
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
@@ -401,7 +408,12 @@ class Slits(_Tilted):
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """1 Pa inside the slits, 0 elsewhere, tilted."""
         x = np.asarray(x, dtype=float)
-        inside = np.any(np.abs(x[..., None] - self.positions) <= self.width / 2, axis=-1)
+        inside = np.zeros(x.shape, bool)
+        middle = (self.count - 1) / 2
+        below = np.floor(x / self.separation + middle)
+        for number in (below, below + 1):  # no other slit is as near
+            nearest = (np.clip(number, 0, self.count - 1) - middle) * self.separation
+            inside |= np.abs(x - nearest) <= self.width / 2
         return inside * np.exp(1j * k0 * float(sin_degrees(self.angle)) * x)
 
     def reach(self, tolerance: float) -> float:

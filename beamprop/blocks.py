@@ -13,6 +13,7 @@ import xarray as xr
 from . import validate
 from .beam import Beam
 from .media import Slab
+from .memory import check_field
 from .questions import FieldMap, Progress
 from .storage import save_blocks
 
@@ -69,6 +70,7 @@ def save_field(
     path = validate.as_path(path)
     validate.function(progress, "progress")
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    check_field(asked.shape, in_file=True)
     memory = validate.as_number(memory, "memory", positive=True)
     block, chunk = _block(asked.shape, memory)
     work = [

@@ -16,6 +16,7 @@ import numpy as np
 from . import spectral
 from .beam import Beam
 from .fan import Fan
+from .memory import check_contour
 from .scene import Scene
 from .spectral import Line, Reach
 from .transfers import Transfer, shifts
@@ -65,6 +66,7 @@ def check_points(
 
 def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
     """The response at the planes that are compared, `moved` in its last bits or not."""
+    check_contour(line.k.size, checks.fan.angles.size, checks.z.size)
     h = checks.transfer(line.k, checks.z, SHIFT if moved else 0.0)
     return Sampled(line, h, amplitudes(checks.k0, checks.fan, line))
 

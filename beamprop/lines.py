@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import judge, modes, spectral
+from . import judge, memory, modes, spectral
 from .fan import Fan
 from .judge import Checks
 from .scene import Scene
@@ -220,6 +220,7 @@ def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float) -
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes agree."""
     count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
     for _ in range(6):
+        memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
         lines = [spectral.propagating_line(s.k0, list(s.branches), c) for c in (count, int(1.4 * count))]
         one, two = (judge.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
         error, _ = judge.difference(checks, one, two)

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import validate
+from . import memory, validate
 from .conventions import branch_wavenumber
 from .validate import as_complex, as_count, as_number
 
@@ -333,6 +333,7 @@ def lmmd_cell(
         Isotropic; evaluated at `design_frequency` if it is dispersive.
     """
     n_layers = as_count(n_layers, "n_layers")
+    memory.check("n_layers", 1000.0 * n_layers, f"{n_layers:.3g} layers", "take fewer")
     eta = as_number(eta, "eta", positive=True)
     design_frequency = as_number(design_frequency, "design_frequency", positive=True)
     delta_rho = as_number(delta_rho, "delta_rho")

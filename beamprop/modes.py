@@ -74,11 +74,11 @@ def is_lossless(s: Scene) -> bool:
     return not any(np.any(v.imag) for v in (*values, *s.before, *s.after))
 
 
-def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
-    """All modes in a box, and how many the argument principle counts."""
+def find_modes(s: Scene, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
+    """All modes in a box, and how many the argument principle counts; `most`: see `zeros`."""
     f = dispersion_of(s)
-    total = winding(f, box.outline(48), 1e-9 * box.right)
-    found = _located(s, box, total) if total > 0 else []
+    total = winding(f, box.outline(48), 1e-9 * box.right, most)
+    found = _located(s, box, total, most=most) if total > 0 else []
     modes = [m._replace(residual=refine(f, m.kx, 1e-3 * abs(m.kx), 2)[1] / abs(m.kx)) for m in _told(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
 

@@ -21,6 +21,10 @@ class TooManyModes(ArithmeticError):
     """A search that would take too long."""
 
 
+class TooManyValues(TooManyModes):
+    """A search that takes more values than it may."""
+
+
 def winding(f: Dispersion, path: np.ndarray, finest: float, most: float = math.inf) -> int:
     """Turns of D about 0 along a closed path."""
 
@@ -35,7 +39,7 @@ def windings(f: ManyDispersions, paths: np.ndarray, finest: float, most: float =
     """Turns of several D about 0, each along its own closed path: paths (P, n), turns (P,).
 
     A step is halved until both halves change log D by little and alike; steps shorter than `finest` are left alone (a zero
-    lies on the path). TooManyModes where that takes more than `most` values of D.
+    lies on the path). TooManyValues where that takes more than `most` values of D.
     """
     count, n = paths.shape
     onward = np.arange(1, n + 1) % n
@@ -43,7 +47,7 @@ def windings(f: ManyDispersions, paths: np.ndarray, finest: float, most: float =
     middles = (paths + ahead) / 2
     most -= middles.size
     if most < 0:
-        raise TooManyModes
+        raise TooManyValues
     # the path's points and the middles of its steps in one call
     values = logarithm(*f(np.concatenate([paths, middles], axis=1), np.arange(count)))
     points = (paths, middles, ahead)
@@ -63,7 +67,7 @@ def windings(f: ManyDispersions, paths: np.ndarray, finest: float, most: float =
         owner, middle = np.tile(owner[again], 2), (start + stop) / 2
         most -= middle.size
         if most < 0:
-            raise TooManyModes
+            raise TooManyValues
         rows = (middle[None], owner[:1]) if count == 1 else (middle[:, None], owner)
         points = (start, middle, stop)
         logs = (np.concatenate([at_a, at_m]), logarithm(*f(*rows)).ravel(), np.concatenate([at_m, at_b]))
@@ -159,7 +163,7 @@ CLUSTER = 1e-6
 def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.inf) -> list[complex]:
     """The `total` zeros of D inside a box, by halving it until Newton's method has one to find; of a cluster, its middle.
 
-    TooManyModes where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
+    TooManyValues where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
     """
     found: list[complex] = []
     outlines = 0
@@ -182,7 +186,7 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
             inside = winding(f, half.outline(), 1e-9 * scale, most)
             outlines += 1
             if outlines > most / 200:
-                raise TooManyModes
+                raise TooManyValues
             if inside > 0:
                 todo.append((half, inside))
     return found

@@ -35,6 +35,7 @@ import numpy as np
 
 from .fft import fast_length as fast_length
 from .fft import plan_for
+from .memory import POINTS_AT_A_TIME
 from .products import product
 
 EPS = float(np.finfo(float).eps)
@@ -235,6 +236,12 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
     With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
     """
     # plain: h @ (right[:, None] * exp(i k x) + left[:, None] * exp(-i k x))
+    if x.size > POINTS_AT_A_TIME:
+        whole = np.empty((*right.shape[:-1], h.shape[0], x.size), complex)
+        for start in range(0, x.size, POINTS_AT_A_TIME):
+            few = slice(start, start + POINTS_AT_A_TIME)
+            whole[..., few] = direct_sum(line, h, right, left, x[few])
+        return whole
     block = max(1, MOST_PHASES // max(1, x.size))
     if line.k.size > block:
         parts = [slice(start, start + block) for start in range(0, line.k.size, block)]

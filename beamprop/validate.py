@@ -17,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from . import memory
+
 #: Magnitudes that double precision can compute with: see above.
 LEAST, MOST = 1e-50, 1e50
 #: Up to here every whole number is a double.
@@ -67,6 +69,7 @@ def _no_loss(value: Any, name: str, expected: str) -> None:
 def numeric(value: Any, name: str, expected: str = "a number or an array of numbers") -> np.ndarray:
     """A new array of float or complex: numbers only, no truth values, strings, dates or masked values."""
     _no_loss(value, name, expected)
+    memory.check(name, 3.0 * memory.COMPLEX * getattr(value, "size", 0), "a copy of it", "give fewer numbers, in parts")
     try:
         array = np.asarray(value)
         if array.dtype.kind == "O" and not all(

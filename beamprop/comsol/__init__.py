@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import validate
+from .. import memory, validate
 from .assemble import make_dataset
 from .forms import READERS, SECTION
 from .text import ANGLES, LENGTHS, PRESSURE_UNITS, length_factor, plain_unit, scan
@@ -103,6 +103,8 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     if not isinstance(ds, xr.Dataset) or "node" not in ds.dims:
         raise ValueError(f"ds: expected a dataset with the dim 'node', got {getattr(ds, 'dims', type(ds).__name__)}")
     axes = {name: validate.positions(v, name, increasing=True) for name, v in (("x", x), ("z", z))}
+    points = axes["x"].size * axes["z"].size
+    memory.check("x", 120.0 * points, f"a grid of {points:.3g} points", "take fewer points")
     from scipy.interpolate import LinearNDInterpolator
     from scipy.spatial import Delaunay
 

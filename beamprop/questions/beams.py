@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, sections, validate, widths
+from .. import datasets, memory, sections, validate, widths
 from ..beam import Beam
 from ..media import Slab
 from ..scene import scenes
@@ -69,6 +69,7 @@ def field(
     """
     validate.function(progress, "progress")
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    memory.check_field(asked.shape)
     p = np.empty(asked.shape, complex)
     for i, _ in enumerate(progress(asked.frequency)):
         asked.choose(i)
@@ -125,6 +126,7 @@ def beam_width(
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    memory.check_table(flat.size * flat_angles.size, 60.0)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
     most, worst = np.zeros(4, int), 0.0

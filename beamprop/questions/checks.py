@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import validate
+from .. import memory, validate
 from ..beam import Beam, sin_degrees
 from ..media import Fluid, Slab
 
@@ -56,12 +56,18 @@ def one_of(**options: Any) -> tuple[str, Any]:
     return next(iter(given.items()))
 
 
-def lateral(name: str, value: Any, k0_at: Any, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed."""
+def lateral(
+    name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+
+    `bytes_each` is what the answer to one plane wave holds.
+    """
     values = validate.angles(value, grazing=True) if name == "angle" else validate.axis(value, name, kind=complex)
     if not np.any(values.imag):
         values = values.real
     flat = np.atleast_1d(values)
+    memory.check_waves(frequency.size * flat.size, flat.size, name, bytes_each)
     if name == "kx":
         return values, np.broadcast_to(flat, (frequency.size, flat.size))
     if name == "angle":

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from .. import datasets, lines, propagate, spectral, validate, widths
+from .. import datasets, lines, memory, propagate, spectral, validate, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
 from ..fan import single
@@ -85,6 +85,7 @@ def beam_measures(
     f = validate.axis(frequency, "frequency", positive=True)
     angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
     worst = 0.0
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
@@ -236,7 +237,9 @@ def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tu
     if k == 0:
         return 0.0, math.nan, math.nan
     extent = beam.reach(1e-6) + s.thickness - beam.z0
-    line = spectral.propagating_line(k, list(s.branches), int(200 + 2 * k * extent))
+    count = 200 + 2 * k * extent
+    memory.check_contour(count)
+    line = spectral.propagating_line(k, list(s.branches), int(count))
     kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
     flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
     right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))

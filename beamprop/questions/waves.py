@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from .. import datasets, modes, response, roots, validate
+from .. import datasets, memory, modes, response, roots, validate
 from ..conventions import outgoing_kz
 from ..media import AIR, Cell, Fluid, Slab, layer_values, slab_values
 from ..scene import scene
@@ -42,26 +44,42 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
-    before, after = slab.before.at(flat), slab.after.at(flat)
-    omega = 2 * np.pi * flat[:, None]
-    res = response.solve(slab_values(slab, flat), before, after, omega, k)
-    if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
-        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
-    energy, absorption = _energies(reflectivity, transmissivity, k, omega, before, after)
+    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 160.0)
+    variables = {n: np.empty(k.shape, complex if n in ("r", "t") else float) for n in WAVES}
+    for rows, columns in _blocks(k.shape):
+        answers = _answer(slab, flat[rows], k[rows, columns], name)
+        for whole, part in zip(variables.values(), answers, strict=True):
+            whole[rows, columns] = part
     dims, pick = checks.dims(frequency=f, **{name: axis})
-    variables = {
-        "r": res.r,
-        "t": res.t,
-        "transmissivity": transmissivity,
-        "reflectivity": reflectivity,
-        "energy_transmission": energy,
-        "absorption": absorption,
-    }
     coords = checks.coords(frequency=f, **{name: axis})
     coords |= _other_coords(slab, name, k, flat, dims, pick)
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
+
+
+#: What is told of plane waves.
+WAVES = ("r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+
+
+def _blocks(shape: tuple[int, int]) -> Iterator[tuple[slice, slice]]:
+    """Parts of (frequency, kx) that are answered at a time: equal ones, so that none is too small to be fast."""
+    many, long = shape
+    parts = -(-long // memory.WAVES_AT_A_TIME)
+    columns = -(-long // parts)
+    rows = max(1, memory.WAVES_AT_A_TIME // columns)
+    for i, j in itertools.product(range(0, many, rows), range(0, long, columns)):
+        yield slice(i, i + rows), slice(j, j + columns)
+
+
+def _answer(slab: Slab, frequency: np.ndarray, kx: np.ndarray, name: str) -> tuple[np.ndarray, ...]:
+    """The variables of `WAVES` at some frequencies and kx, (F, n) each."""
+    before, after = slab.before.at(frequency), slab.after.at(frequency)
+    omega = 2 * np.pi * frequency[:, None]
+    res = response.solve(slab_values(slab, frequency), before, after, omega, kx)
+    if not (np.all(np.isfinite(res.r)) and np.all(np.isfinite(res.t))):
+        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
+    reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    energies = _energies(reflectivity, transmissivity, kx, omega, before, after)
+    return (res.r, res.t, transmissivity, reflectivity, *energies)
 
 
 def _energies(
@@ -121,7 +139,7 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
     f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat)
+    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 400.0)
     if np.iscomplexobj(axis):
         raise ValueError(f"{name}: expected real values, got complex ones")
     layers = layer_values(cell, flat)
@@ -203,8 +221,14 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
         )
+    most = memory.most_values()
     try:
-        found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+        found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0), most)
+    except roots.TooManyValues:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip that {most:.2g} values of the dispersion function search through, got "
+            f"{highest:g} by {strip:g} k0; search a part of it, by kx_over_k0_max and strip_over_k0"
+        ) from None
     except roots.TooManyModes:
         raise ValueError(
             f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"

@@ -64,11 +64,12 @@ def entire(u: np.ndarray) -> Entire:
             f"slab: expected layers whose phase squared, rho_z d^2 (w^2/K - kx^2/rho_x), is a finite number, got {size}"
         )
     w = np.sqrt(u)
-    safe = np.where(np.abs(w) < 1e-4, 1.0, w)
+    near = np.abs(w) < 1e-4
+    safe, small = np.where(near, 1.0, w), np.where(near, u, 0.0)
     steep = np.abs(w.imag)
     if float(steep.max()) < SCALE_FROM:
         half = np.sin(w / 2)
-        s = np.where(np.abs(w) < 1e-4, 1 - u / 6 + u * u / 120, 2 * half * np.cos(w / 2) / safe)
+        s = np.where(near, 1 - small / 6 + small * small / 120, 2 * half * np.cos(w / 2) / safe)
         return Entire(1.0, -2 * half * half, s, None)
     growth = np.where(steep < SCALE_FROM, 0.0, steep)
     calm = entire(np.where(growth > 0, 0.0, u))
