@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .memory import check_fft
+
 
 class Plan(NamedTuple):
     """Two FFTs: sum_m c_m e^{2 pi i m j/n} of source[0] (rows, n) into result[0], e^{-2 pi i m j/n} of 1; unscaled."""
@@ -57,6 +59,7 @@ def _new_plan(rows: int, n: int) -> Plan:
 
     FFTW makes and destroys plans in one thread at a time only: pyfftw holds a lock of its own while it does either.
     """
+    check_fft(rows * n)
     try:
         import pyfftw
     except ImportError:  # no wheel for this platform

@@ -131,8 +131,8 @@ def check_field(shape: tuple[int, ...], in_file: bool = False) -> None:
     """A field map on (frequency, angle, z, x), of which a file takes the answer, and a row of it."""
     frequencies, angles, planes, points = shape
     row = COMPLEX * points
-    # exponentials; copies of x, and a row that is summed; angles that are made of others
-    working = min(2.6e8, 4 * COMPLEX * 300 * points) + 5 * row + 32 * angles * min(angles, 100)
+    # exponentials; copies of x, and rows that are summed together; angles that are made of others
+    working = min(1.5e8, 4e4 * points) + (2 + min(planes, 16)) * row + 32.0 * angles * min(angles, 100)
     answer = 0 if in_file else row * planes * angles * frequencies
     many = (
         f"{frequencies * angles * planes * points:.3g} values of p" if not in_file else f"rows of {points:.3g} points"
@@ -142,10 +142,9 @@ def check_field(shape: tuple[int, ...], in_file: bool = False) -> None:
 
 
 def check_waves(values: int, columns: int, name: str, bytes_each: float) -> None:
-    """Plane-wave questions on (frequency, kx)."""
-    check(
-        name, bytes_each * values, f"{values:.3g} plane waves", f"ask for fewer of the {columns:.3g} {name}, in parts"
-    )
+    """Plane-wave questions on (frequency, kx): what each answer takes, and the temporaries of a block."""
+    size = bytes_each * values + 400.0 * min(values, WAVES_AT_A_TIME)
+    check(name, size, f"{values:.3g} plane waves", f"ask for fewer of the {columns:.3g} {name}, in parts")
 
 
 def check_table(entries: int, bytes_each: float) -> None:
@@ -153,9 +152,14 @@ def check_table(entries: int, bytes_each: float) -> None:
     check("frequency", bytes_each * entries, f"{entries:.3g} pairs of frequency and angle", "ask for fewer, in parts")
 
 
+def check_fft(values: int) -> None:
+    """Buffers of FFTs, and what is done to a row of them."""
+    check("x", 128.0 * values, f"Fourier transforms of {values:.3g} values", "ask for fewer points")
+
+
 def check_contour(waves: float, beams: int = 1, planes: int = 9) -> None:
     """The plane waves of a contour: spectra of the beams, and the response on the planes that are compared."""
-    size = COMPLEX * waves * (14.0 + 4.0 * beams + 2.0 * planes)
+    size = waves * (700.0 + 75.0 * beams + 30.0 * planes)
     check(
         "x",
         size,
@@ -165,5 +169,5 @@ def check_contour(waves: float, beams: int = 1, planes: int = 9) -> None:
 
 
 def most_values(bytes_each: float = 600.0) -> float:
-    """How many values of a dispersion function may be held at a time."""
-    return min(limit() / bytes_each, 1e7)
+    """How many values of a dispersion function may be held at a time, and be waited for: 2e6 take up to half a minute."""
+    return min(limit() / bytes_each, 2e6)

@@ -56,7 +56,7 @@ ONLY = {
     "memory": set(),
     "validate": {"memory"},
     "widths": set(),
-    "fft": set(),
+    "fft": {"memory"},
     "spectral": {"products", "fft", "memory"},
     "roots": set(),
     "media": {"conventions", "memory", "validate"},

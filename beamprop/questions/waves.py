@@ -44,7 +44,7 @@ def scattering(slab: Slab, frequency: Any, *, kx: Any = None, kx_over_k0: Any = 
     f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 160.0)
+    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
     variables = {n: np.empty(k.shape, complex if n in ("r", "t") else float) for n in WAVES}
     for rows, columns in _blocks(k.shape):
         answers = _answer(slab, flat[rows], k[rows, columns], name)
@@ -139,7 +139,7 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
     f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 400.0)
+    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 350.0)
     if np.iscomplexobj(axis):
         raise ValueError(f"{name}: expected real values, got complex ones")
     layers = layer_values(cell, flat)
