@@ -344,7 +344,7 @@ def _warn_of_conjugate(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> bool:
 
 
 def _warn_of_interpolation(between: float, error: np.ndarray) -> None:
-    if between > 3e-4 and between > 0.3 * np.nanmax(error, initial=0.0):
+    if between > 3e-4 and between > 0.3 * np.max(error, initial=0.0, where=np.isfinite(error)):
         warnings.warn(
             f"b's points do not resolve its field: interpolating it makes a relative error of about "
             f"{between:.2g}; compare on the same x and z",

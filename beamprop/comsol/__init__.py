@@ -105,10 +105,19 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     axes = {name: validate.positions(v, name, increasing=True) for name, v in (("x", x), ("z", z))}
     points = axes["x"].size * axes["z"].size
     memory.check("x", 120.0 * points, f"a grid of {points:.3g} points", "take fewer points")
+    missing = [n for n in ("x", "z") if n not in ds.variables or ds[n].dims != ("node",)]
+    if missing:
+        raise ValueError(f"ds: expected coordinates x and z of the nodes, got none for {', '.join(missing)}")
+    nodes = [validate.positions(ds[n].values, f"{n} of the nodes") for n in ("x", "z")]
     from scipy.interpolate import LinearNDInterpolator
-    from scipy.spatial import Delaunay
+    from scipy.spatial import Delaunay, QhullError
 
-    triangles = Delaunay(np.stack([ds.x.values, ds.z.values], axis=-1))
+    try:
+        triangles = Delaunay(np.stack(nodes, axis=-1))
+    except QhullError:
+        raise ValueError(
+            f"ds: expected three nodes or more that span a plane, got {nodes[0].size} that do not"
+        ) from None
     targets = np.stack(np.meshgrid(axes["x"], axes["z"]), axis=-1)
     out = ds.drop_dims("node")
     for name in ("x", "z"):

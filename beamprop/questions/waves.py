@@ -136,6 +136,8 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
     """
     validate.instance(cell, Cell, "cell")
     validate.instance(background, Fluid, "background")
+    if cell.thickness < validate.LEAST:  # phases of thinner cells underflow, and kz is the phase over the thickness
+        raise ValueError(f"cell: expected a thickness of at least {validate.LEAST:g} m, got {cell.thickness:g}")
     f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
@@ -148,6 +150,8 @@ def bloch(cell: Cell, frequency: Any, *, kx: Any = None, kx_over_k0: Any = None,
             "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"
         )
     kz = response.bloch_wavenumber(layers, 2 * np.pi * flat[:, None], k.astype(complex))
+    if not np.all(np.isfinite(kz)):
+        raise ValueError(f"{name}: the Bloch wavenumber is not finite (double precision cannot hold the cell's matrix)")
     k0 = checks.forward_k0(background, flat, "background")
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
