@@ -20,6 +20,7 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import traceback
 import warnings
 from collections.abc import Callable, Iterator
@@ -138,10 +139,11 @@ def _limited() -> None:
 def in_process(kind: str, first: int, last: int) -> list[dict[str, Any]]:
     """Outcomes from a process of its own; where it ends, that is the outcome of the case that it was at."""
     found: list[dict[str, Any]] = []
-    environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg"}
     while first < last:
         command = [sys.executable, __file__, "--worker", kind, str(first), str(last)]
-        child = subprocess.run(command, capture_output=True, text=True, preexec_fn=_limited, env=environment)
+        with tempfile.TemporaryDirectory() as folder:  # of all files that cases write
+            environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg", "TMPDIR": folder}
+            child = subprocess.run(command, capture_output=True, text=True, preexec_fn=_limited, env=environment)
         lines = [json.loads(line) for line in child.stdout.splitlines()]
         found += [line for line in lines if "case" in line]
         if child.returncode == 0:
