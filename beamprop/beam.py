@@ -266,6 +266,8 @@ class Profile(_Tilted):
         ------
         ValueError
             Names the file, and the line that is no row of numbers.
+        OSError
+            The file cannot be opened.
         """
         path = validate.as_path(path)
         validate.flag(conjugate, "conjugate")

@@ -87,13 +87,13 @@ def _system() -> Iterator[float]:
         yield float(pages) * os.sysconf("SC_PAGE_SIZE")
 
 
-def _container() -> Iterator[float]:
+def _container(own: str | Path = "/proc/self/cgroup", groups: str | Path = "/sys/fs/cgroup") -> Iterator[float]:
     """What the control groups of this process, and those around them, leave of their limits; files in the cache can go."""
-    for line in _lines("/proc/self/cgroup"):
+    for line in _lines(own):
         _, controllers, path = line.split(":", 2)
-        if controllers in ("", "memory"):
-            new = not controllers
-            root = Path("/sys/fs/cgroup" if new else "/sys/fs/cgroup/memory")
+        if not controllers or "memory" in controllers.split(","):
+            new = not controllers  # version 2 has one tree for all controllers
+            root = Path(groups) if new else Path(groups) / "memory"
             most, used = ("memory.max", "memory.current") if new else ("memory.limit_in_bytes", "memory.usage_in_bytes")
             here = root / path.lstrip("/")
             for folder in (here, *here.parents):
@@ -104,7 +104,7 @@ def _container() -> Iterator[float]:
                     break
 
 
-def _lines(path: str) -> list[str]:
+def _lines(path: str | Path) -> list[str]:
     with contextlib.suppress(OSError):
         return [line for line in Path(path).read_text(encoding="utf-8").splitlines() if line.count(":") >= 2]
     return []

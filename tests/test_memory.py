@@ -135,6 +135,29 @@ def test_containers_and_limits_count(monkeypatch, tmp_path):
     assert memory.available() == memory.UNKNOWN
 
 
+@pytest.mark.parametrize(
+    ("line", "folder", "most", "used"),
+    [
+        ("0::/a/b", "a", "memory.max", "memory.current"),
+        ("0::/a/b", "a/b", "memory.max", "memory.current"),
+        ("4:memory:/a/b", "memory/a/b", "memory.limit_in_bytes", "memory.usage_in_bytes"),
+        ("4:cpu,memory:/elsewhere", "memory", "memory.limit_in_bytes", "memory.usage_in_bytes"),
+    ],
+)
+def test_control_groups(tmp_path, line, folder, most, used):
+    """Both versions; the group itself, one around it, and the root, where a container does not see its own path."""
+    own, groups = tmp_path / "own", tmp_path / "groups"
+    own.write_text(f"7:cpuset:/\n{line}\n")
+    (groups / folder).mkdir(parents=True)
+    (groups / folder / most).write_text("5000000\n")
+    (groups / folder / used).write_text("3000000\n")
+    assert list(memory._container(own, groups)) == [2e6]
+    (groups / folder / "memory.stat").write_text("anon 1\ninactive_file 500000\n")
+    assert list(memory._container(own, groups)) == [2.5e6]
+    (groups / folder / most).write_text("max\n")
+    assert list(memory._container(own, groups)) == []
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="the limit is not kept elsewhere")
 def test_a_limit_of_the_shell_counts():
     """``ulimit -v`` leaves less than the machine has: a question that would be killed is refused instead."""

@@ -69,6 +69,8 @@ def read_comsol(
     ------
     ValueError
         What cannot be read without doubt, with the file, the line, what was expected and what came.
+    OSError
+        The file cannot be opened.
 
     Warns
     -----

@@ -65,7 +65,7 @@ def field(
     Raises
     ------
     ValueError
-        Names the argument, what was expected and what came.
+        Names the argument, what was expected and what came; also for what does not fit into memory.
     """
     validate.function(progress, "progress")
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
