@@ -177,6 +177,18 @@ def test_one_branch_of_the_square_root():
     assert homes == ["conventions", "conventions"]
 
 
+def test_one_home_of_checks():
+    """What is a number, a count, an axis, an angle, a path is decided in validate, and what fits in memory."""
+    names = {"as_number", "as_complex", "as_count", "as_path", "within", "positions", "instance", "flag", "word"}
+    homes = {
+        (node.name, FILES[path])
+        for path in FILES
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.FunctionDef) and node.name in names | {"available"}
+    }
+    assert homes == {(name, "validate") for name in names} | {("available", "memory")}
+
+
 @pytest.mark.parametrize(
     "module",
     ["conventions", "media", "homogenize", "response", "beam", "widths", "fft", "spectral", "lines", "propagate"],
