@@ -179,7 +179,7 @@ def test_one_branch_of_the_square_root():
 
 def test_one_home_of_checks():
     """What is a number, a count, an axis, an angle, a path is decided in validate, and what fits in memory."""
-    names = {"as_number", "as_complex", "as_count", "as_path", "within", "positions", "instance", "flag", "word"}
+    names = {"as_number", "as_count", "as_path", "instance", "flag", "word"}
     homes = {
         (node.name, FILES[path])
         for path in FILES
