@@ -13,7 +13,8 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from .media import as_count, as_number
+from . import memory, validate
+from .validate import as_count, as_number
 
 _B = TypeVar("_B", bound="_Tilted")
 
@@ -50,9 +51,7 @@ class Beam(Protocol):
 
 
 def _check_launch(angle: Any, z0: Any) -> tuple[float, float]:
-    angle, z0 = as_number(angle, "angle"), as_number(z0, "z0")
-    if abs(angle) >= 90:
-        raise ValueError(f"angle: expected degrees from the normal, between -90 and 90, got {angle!r}")
+    angle, z0 = validate.angle(angle), as_number(z0, "z0")
     if z0 > 0:
         raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {z0!r}")
     return angle, z0
@@ -134,10 +133,8 @@ class GaussianBeam(_Tilted):
         object.__setattr__(self, "x0", as_number(self.x0, "x0"))
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
-        if self.width_of not in ("pressure", "intensity"):
-            raise ValueError(f"width_of: expected 'pressure' or 'intensity', got {self.width_of!r}")
-        if self.form not in ("launch", "rotated"):
-            raise ValueError(f"form: expected 'launch' or 'rotated', got {self.form!r}")
+        validate.word(self.width_of, "width_of", "pressure", "intensity")
+        validate.word(self.form, "form", "launch", "rotated")
 
     @property
     def radius(self) -> float:
@@ -169,7 +166,8 @@ class GaussianBeam(_Tilted):
         ``S = S_waist(kappa) dkappa/dkx`` for |kx| < k0, and 0 beyond.
         """
         kx = np.asarray(kx)
-        shift = np.exp(-1j * kx * self.x0) if self.x0 else 1.0
+        with np.errstate(over="ignore"):  # infinite far from x = 0 for complex kx: the field's check says so
+            shift = np.exp(-1j * kx * self.x0) if self.x0 else 1.0
         if self.form == "launch":
             return super().spectrum(kx, k0) * shift
         kx = kx.real
@@ -200,13 +198,6 @@ class GaussianBeam(_Tilted):
             return -k0, k0
         middle, half = k0 * float(sin_degrees(self.angle)), 2 / self.radius * math.sqrt(math.log(1 / tolerance))
         return middle - half, middle + half
-
-
-def _numbers(values: Any, kind: type, name: str) -> np.ndarray:
-    try:
-        return np.array(values, dtype=kind)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected an array of numbers, got {values!r}") from None
 
 
 def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -248,13 +239,12 @@ class Profile(_Tilted):
     def __post_init__(self) -> None:
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
-        x, p = _numbers(self.x, float, "x"), _numbers(self.p, complex, "p")
-        if x.ndim != 1 or x.size < 2:
+        x, p = validate.positions(self.x, "x", increasing=True), validate.numeric(self.p, "p").astype(complex)
+        if x.size < 2:
             raise ValueError(f"x: expected a 1-D array of at least 2 positions, got shape {x.shape}")
         if p.shape != x.shape:
             raise ValueError(f"p: expected an array of x's shape {x.shape}, got {p.shape}")
-        if not np.all(np.isfinite(x)) or not np.all(np.diff(x) > 0):
-            raise ValueError("x: expected finite, strictly increasing positions")
+        validate.within(p, "p", zero=True)
         if not np.all(np.isfinite(p)):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
@@ -263,7 +253,9 @@ class Profile(_Tilted):
         if np.ptp(steps) > 1e-6 * steps.min():
             from scipy.interpolate import CubicSpline
 
-            even = np.linspace(x[0], x[-1], round((x[-1] - x[0]) / steps.min()) + 1)
+            count = float((x[-1] - x[0]) / steps.min()) + 1
+            memory.check("x", 200.0 * count, f"{count:.3g} even steps as small as the least", "space x more evenly")
+            even = np.linspace(x[0], x[-1], round(count))
             x, p = even, CubicSpline(x, p)(even)
         for key, array in (("x", x), ("p", p)):
             array.setflags(write=False)
@@ -289,7 +281,11 @@ class Profile(_Tilted):
         ------
         ValueError
             Names the file, and the line that is no row of numbers.
+        OSError
+            The file cannot be opened.
         """
+        path = validate.as_path(path)
+        validate.flag(conjugate, "conjugate")
         rows: list[list[float]] = []
         with open(path, encoding="utf-8-sig") as lines:
             for number, line in enumerate(lines, 1):
@@ -367,8 +363,12 @@ class Profile(_Tilted):
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""
         x = np.asarray(x, dtype=float)
-        p = np.sinc((x[..., None] - self.x) / self.spacing) @ self.p
-        return p * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
+        p, flat = np.empty(x.size, complex), x.ravel()
+        block = max(1, 2_000_000 // self.x.size)
+        for start in range(0, x.size, block):
+            part = slice(start, start + block)
+            p[part] = np.sinc((flat[part, None] - self.x) / self.spacing) @ self.p
+        return p.reshape(x.shape) * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
 
     def reach(self, tolerance: float) -> float:
         """Half the sampled interval [m]."""
@@ -403,6 +403,7 @@ class Slits(_Tilted):
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", as_number(self.width, "width", positive=True))
         object.__setattr__(self, "count", as_count(self.count, "count"))
+        memory.check("count", 50.0 * self.count, f"{self.count:.3g} slits", "take fewer")
         object.__setattr__(self, "separation", as_number(self.separation, "separation", positive=True))
         for name, value in zip(("angle", "z0"), _check_launch(self.angle, self.z0), strict=True):
             object.__setattr__(self, name, value)
@@ -429,7 +430,12 @@ class Slits(_Tilted):
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """1 Pa inside the slits, 0 elsewhere, tilted."""
         x = np.asarray(x, dtype=float)
-        inside = np.any(np.abs(x[..., None] - self.positions) <= self.width / 2, axis=-1)
+        inside = np.zeros(x.shape, bool)
+        middle = (self.count - 1) / 2
+        below = np.floor(x / self.separation + middle)
+        for number in (below, below + 1):  # no other slit is as near
+            nearest = (np.clip(number, 0, self.count - 1) - middle) * self.separation
+            inside |= np.abs(x - nearest) <= self.width / 2
         return inside * np.exp(1j * k0 * float(sin_degrees(self.angle)) * x)
 
     def reach(self, tolerance: float) -> float:

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from . import validate
 from .beam import Beam
-from .media import Slab, as_number
+from .media import Slab
+from .memory import check_field
 from .questions import FieldMap, Progress
 from .storage import save_blocks
 
@@ -65,8 +67,11 @@ def save_field(
     ValueError
         Names the argument, what was expected and what came.
     """
+    path = validate.as_path(path)
+    validate.function(progress, "progress")
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
-    memory = as_number(memory, "memory", positive=True)
+    check_field(asked.shape, in_file=True)
+    memory = validate.as_number(memory, "memory", positive=True)
     block, chunk = _block(asked.shape, memory)
     work = [
         (i, slice(j, j + block[0]), slice(k, k + block[1]))

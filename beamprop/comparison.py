@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from . import datasets
+from . import datasets, validate
 from .comsol import PRESSURE_UNITS, plain_unit
 from .conventions import LABELS, label
 from .widths import full_width
@@ -89,8 +89,7 @@ def compare(
     well it does. Inside a slab of thin layers the field changes from layer to layer, so there both need the same z.
     Points that are NaN in either field are left out.
     """
-    if not isinstance(rescale, bool | np.bool_):
-        raise ValueError(f"rescale: expected True or False, got {rescale!r}")
+    validate.flag(rescale, "rescale")
     p_a = _field(a, "a")
     unit = p_a.attrs.get("units")
     p_b = _match(_field(b, "b"), p_a, unit, "b")
@@ -345,7 +344,7 @@ def _warn_of_conjugate(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> bool:
 
 
 def _warn_of_interpolation(between: float, error: np.ndarray) -> None:
-    if between > 3e-4 and between > 0.3 * np.nanmax(error, initial=0.0):
+    if between > 3e-4 and between > 0.3 * np.max(error, initial=0.0, where=np.isfinite(error)):
         warnings.warn(
             f"b's points do not resolve its field: interpolating it makes a relative error of about "
             f"{between:.2g}; compare on the same x and z",

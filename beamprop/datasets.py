@@ -18,6 +18,7 @@ import xarray as xr
 from . import beam as _beam
 from . import homogenize as _homogenize
 from . import media as _media
+from . import validate
 from ._version import __version__
 from .conventions import LABELS, label
 
@@ -117,5 +118,9 @@ def make(
 
 def provenance(ds: xr.Dataset) -> dict[str, Any]:
     """What a dataset records of its making, with slab, cell and beam rebuilt as objects."""
-    record = json.loads(ds.attrs["provenance"])
+    validate.instance(ds, xr.Dataset, "ds")
+    text = ds.attrs.get("provenance")
+    if not isinstance(text, str):
+        raise ValueError("ds: expected a dataset with the attribute provenance, got one without it")
+    record = json.loads(text)
     return {key: rebuild(value) for key, value in record.items()}

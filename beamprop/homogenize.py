@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from . import validate
 from .media import Cell, Fluid, FluidValues, Layer, Membrane, Slab
 
 
@@ -36,8 +37,7 @@ class Tabulated:
 
 
 def _layers(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, list[FluidValues]]:
-    if not isinstance(cell, Cell):
-        raise ValueError(f"cell: expected a Cell, got {cell!r}")
+    validate.instance(cell, Cell, "cell")
     layers = [layer for layer in cell.layers if isinstance(layer, Layer)]
     if len(layers) != len(cell.layers):
         raise ValueError("cell: an effective medium needs a cell of layers only, got a Membrane")
@@ -108,8 +108,7 @@ FUNCTIONS: tuple[type, ...] = (Tabulated, CellMean, LmmdDensity, LmmdJump)
 
 def _simplify(cell: Cell, function: Any) -> Any:
     """A number where the cell does not depend on frequency, the function otherwise."""
-    if not isinstance(cell, Cell):
-        raise ValueError(f"cell: expected a Cell, got {cell!r}")
+    validate.instance(cell, Cell, "cell")
     dispersive = any(isinstance(layer, Layer) and layer.fluid.dispersive for layer in cell.layers)
     return function if dispersive else complex(function(np.array(1.0)))
 
@@ -155,8 +154,8 @@ def lmmd_emt_slab(slab: Slab, interface: bool = True) -> Slab:
     Slab
         Of the same thickness and half-spaces.
     """
-    if not isinstance(slab, Slab):
-        raise ValueError(f"slab: expected a Slab, got {slab!r}")
+    validate.instance(slab, Slab, "slab")
+    validate.flag(interface, "interface")
     segments = []
     for cell, periods in slab.segments:
         layers: tuple[Layer | Membrane, ...] = (Layer(lmmd_emt(cell), cell.thickness * periods),)

@@ -16,6 +16,7 @@ import numpy as np
 from . import spectral
 from .beam import Beam
 from .fan import Fan
+from .memory import check_contour
 from .scene import Scene, real_branches
 from .spectral import Line, Reach
 from .transfers import Transfer, shifts
@@ -130,6 +131,7 @@ def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.n
 
 def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
     """The response at the planes that are compared, `moved` in its last bits or not."""
+    check_contour(line.k.size, checks.fan.angles.size, checks.z.size)
     h = checks.transfer(line.k, checks.z, SHIFT if moved else 0.0)
     return Sampled(line, h, amplitudes(checks.k0, checks.fan, line))
 
@@ -142,9 +144,7 @@ class Survey(NamedTuple):
     sharp: float  #: distance from kx = 0 of the nearest singularity, inf where none is near
 
 
-def survey(
-    s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float
-) -> Survey:
+def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float) -> Survey:
     """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
     whether the response is sharp at kx = 0.
 

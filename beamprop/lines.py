@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import judge, misplaced, spectral
+from . import judge, memory, misplaced, spectral
 from .fan import Fan
 from .judge import Checks
 from .scene import Scene, is_lossless, last_branch, nearest_branch, real_branches
@@ -119,7 +119,7 @@ class _Search:
         if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
             self.reach = reach._replace(band=judge.arriving_band(s, checks, reach, rtol * 1e-3))
             self.plan = self._planned(math.inf)
-        if self.plan.count > MANY_MODES:
+        if self.plan.nodes > MANY_MODES:
             low = checks.fan.low(s.k0, 1e-6 * rtol)
             if low > 0 and judge.wide_enough(checks.transfer, checks.z, low, self.reach.band):
                 self.reach = self.reach._replace(low=low)
@@ -132,7 +132,7 @@ class _Search:
 
     def too_wide(self) -> bool:
         """Whether the present plan takes too many plane waves."""
-        return self.plan.other().count > MOST_MODES
+        return self.plan.other().nodes > MOST_MODES
 
     def look(self) -> misplaced.MisplacedPoles:
         """Poles on the wrong side of the contour of the present plan, searched for as far as its band goes."""
@@ -148,9 +148,13 @@ class _Search:
         start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
         plan = self._planned(math.inf)
         loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, start)
-        remedy = "" if loss is None else (
-            f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
-            "in every layer and half-space"
+        remedy = (
+            ""
+            if loss is None
+            else (
+                f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
+                "in every layer and half-space"
+            )
         )
         return f"slab: it guides more backward waves than can be told from the forward ones; add loss{remedy}"
 
@@ -270,6 +274,7 @@ def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float) -
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes agree."""
     count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
     for _ in range(6):
+        memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
         lines = [spectral.propagating_line(s.k0, real_branches(s), c) for c in (count, int(1.4 * count))]
         one, two = (judge.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
         error, _ = judge.difference(checks, one, two)

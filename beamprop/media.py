@@ -13,48 +13,24 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from . import memory, validate
 from .conventions import branch_wavenumber
+from .validate import as_complex, as_count, as_number
 
 Property = complex | Callable[[np.ndarray], np.ndarray]
 
 
-def as_number(value: Any, name: str, *, positive: bool = False) -> float:
-    """A finite real number, or a ValueError that names the argument."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected a real number, got {value!r}") from None
-    if not math.isfinite(number) or (positive and number <= 0):
-        kind = "a finite number above zero" if positive else "a finite number"
-        raise ValueError(f"{name}: expected {kind}, got {number!r}")
-    return number
-
-
-def as_count(value: Any, name: str) -> int:
-    """A whole number of at least 1, or a ValueError that names the argument."""
-    try:
-        number = int(value)
-        whole = number == value
-    except (TypeError, ValueError, OverflowError):
-        whole = False
-    if not whole or isinstance(value, bool) or number < 1:
-        raise ValueError(f"{name}: expected a whole number of at least 1, got {value!r}")
-    return number
-
-
-def _as_complex(value: Any, name: str) -> complex:
-    try:
-        return complex(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected a number or a function of frequency, got {value!r}") from None
-
-
-def _check_property(values: Any, name: str, *, gain_sign: int, active: bool, infinite: bool = False) -> None:
-    """Refuse NaN, infinity (unless legitimate) and gain in a material property's values."""
+def _check_property(
+    values: Any, name: str, *, gain_sign: int, active: bool, infinite: bool = False, zero: bool = True
+) -> None:
+    """Refuse NaN, infinity and zero (unless legitimate), gain, and what double precision cannot compute with."""
     values = np.atleast_1d(np.asarray(values, dtype=complex))
     allowed = np.isfinite(values) | (np.isinf(values) if infinite else False)
     if not np.all(allowed):
         raise ValueError(f"{name}: expected finite values, got {values[~allowed][0]}")
+    if not zero and np.any(values == 0):
+        raise ValueError(f"{name}: expected a value other than zero, got 0")
+    validate.within(values[values != 0], name)
     gain = np.isfinite(values) & (gain_sign * values.imag < 0)
     if not active and np.any(gain):
         relation = ">= 0" if gain_sign > 0 else "<= 0"
@@ -62,6 +38,18 @@ def _check_property(values: Any, name: str, *, gain_sign: int, active: bool, inf
             f"{name}: expected a passive medium, Im({name}) {relation} with exp(-i w t), got {values[gain][0]}; "
             "pass active=True for a medium with gain"
         )
+
+
+def _values_at(prop: Property, frequency: np.ndarray, name: str) -> np.ndarray:
+    """A property at frequencies [Hz], complex, of their shape. A function may overwrite what it is given: it gets a copy."""
+    if not callable(prop):
+        return np.full(frequency.shape, prop, dtype=complex)
+    out = validate.numeric(prop(frequency.copy()), name, "a function that returns numbers").astype(complex)
+    if out.shape != frequency.shape:
+        raise ValueError(
+            f"{name}: expected a function that returns an array of shape {frequency.shape}, got {out.shape}"
+        )
+    return out
 
 
 @dataclass(frozen=True)
@@ -91,10 +79,11 @@ class Fluid:
     active: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "active", validate.flag(self.active, "active"))
         for name in ("density", "bulk_modulus", "density_x"):
             value = getattr(self, name)
             if not callable(value) and not (name == "density_x" and value is None):
-                object.__setattr__(self, name, _as_complex(value, name))
+                object.__setattr__(self, name, as_complex(value, name))
         numbers = {
             n: v
             for n in ("density", "bulk_modulus", "density_x")
@@ -106,9 +95,7 @@ class Fluid:
         if density is not None:
             _check_property(density, "density", gain_sign=1, active=self.active)
         if bulk_modulus is not None:
-            _check_property(bulk_modulus, "bulk_modulus", gain_sign=-1, active=self.active)
-            if np.any(np.asarray(bulk_modulus) == 0):
-                raise ValueError("bulk_modulus: expected a value other than zero, got 0")
+            _check_property(bulk_modulus, "bulk_modulus", gain_sign=-1, active=self.active, zero=False)
         if density_x is not None:
             _check_property(density_x, "density_x", gain_sign=1, active=self.active, infinite=True)
             if np.any(np.asarray(density_x) == 0):
@@ -117,11 +104,13 @@ class Fluid:
     @classmethod
     def from_speed(cls, density: complex, sound_speed: complex, *, active: bool = False) -> Fluid:
         """A fluid by its density [kg/m3] and speed of sound [m/s]: bulk modulus ``density * sound_speed**2``."""
-        rho, c = _as_complex(density, "density"), _as_complex(sound_speed, "sound_speed")
+        rho, c = as_complex(density, "density"), as_complex(sound_speed, "sound_speed")
         if not (np.isfinite(rho) and rho != 0):
             raise ValueError(f"density: expected a finite number other than zero beside a speed, got {density!r}")
         if not (np.isfinite(c) and c != 0):
             raise ValueError(f"sound_speed: expected a finite number other than zero, got {sound_speed!r}")
+        for name, value in (("density", rho), ("sound_speed", c), ("sound_speed", rho * c * c)):
+            validate.within(value, name)
         return cls(rho, rho * c * c, active=active)
 
     @property
@@ -132,20 +121,9 @@ class Fluid:
     def at(self, frequency: Any) -> FluidValues:
         """The properties at frequencies [Hz], as complex arrays of frequency's shape."""
         frequency = np.asarray(frequency, dtype=float)
-
-        def values(name: str, prop: Property) -> np.ndarray:
-            if not callable(prop):
-                return np.full(frequency.shape, prop, dtype=complex)
-            out = np.asarray(prop(frequency), dtype=complex)
-            if out.shape != frequency.shape:
-                raise ValueError(
-                    f"{name}: expected a function that returns an array of shape {frequency.shape}, got {out.shape}"
-                )
-            return out
-
-        rho_z = values("density", self.density)
-        K = values("bulk_modulus", self.bulk_modulus)
-        rho_x = rho_z if self.density_x is None else values("density_x", self.density_x)
+        rho_z = _values_at(self.density, frequency, "density")
+        K = _values_at(self.bulk_modulus, frequency, "bulk_modulus")
+        rho_x = rho_z if self.density_x is None else _values_at(self.density_x, frequency, "density_x")
         if self.dispersive:
             self._check(rho_z, K, None if self.density_x is None else rho_x)
         return FluidValues(rho_z, rho_x, K)
@@ -178,9 +156,8 @@ class Layer:
     thickness: float
 
     def __post_init__(self) -> None:
-        if not isinstance(self.fluid, Fluid):
-            raise ValueError(f"fluid: expected a Fluid, got {self.fluid!r}")
-        object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True))
+        validate.instance(self.fluid, Fluid, "fluid")
+        object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True, tiny=True))
 
 
 @dataclass(frozen=True)
@@ -196,21 +173,17 @@ class Membrane:
     thickness = 0.0
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "active", validate.flag(self.active, "active"))
         if not callable(self.areal_density):
-            value = _as_complex(self.areal_density, "areal_density")
+            value = as_complex(self.areal_density, "areal_density")
             object.__setattr__(self, "areal_density", value)
             _check_property(value, "areal_density", gain_sign=1, active=self.active)
 
     def at(self, frequency: np.ndarray) -> np.ndarray:
         """Areal density at frequencies [Hz], checked."""
-        if not callable(self.areal_density):
-            return np.full(frequency.shape, self.areal_density, dtype=complex)
-        out = np.asarray(self.areal_density(frequency), dtype=complex)
-        if out.shape != frequency.shape:
-            raise ValueError(
-                f"areal_density: expected a function that returns an array of shape {frequency.shape}, got {out.shape}"
-            )
-        _check_property(out, "areal_density", gain_sign=1, active=self.active)
+        out = _values_at(self.areal_density, frequency, "areal_density")
+        if callable(self.areal_density):
+            _check_property(out, "areal_density", gain_sign=1, active=self.active)
         return out
 
 
@@ -223,13 +196,13 @@ class Cell:
     def __post_init__(self) -> None:
         layers = (self.layers,) if isinstance(self.layers, Layer) else self.layers
         if not isinstance(layers, Iterable):
-            raise ValueError(f"layers: expected a sequence of Layer, got {layers!r}")
+            raise validate.refuse("layers", "a sequence of Layer", layers)
         layers = tuple(layers)
-        if not any(isinstance(layer, Layer) for layer in layers):
-            raise ValueError("layers: expected at least one Layer, got none")
         for layer in layers:
             if not isinstance(layer, Layer | Membrane):
-                raise ValueError(f"layers: expected Layer objects, got {layer!r}")
+                raise validate.refuse("layers", "Layer objects", layer)
+        if not any(isinstance(layer, Layer) for layer in layers):
+            raise ValueError("layers: expected at least one Layer, got none")
         object.__setattr__(self, "layers", layers)
 
     @property
@@ -265,14 +238,13 @@ class Slab:
     def __init__(self, cell: Cell | Iterable[Layer], periods: int = 1, before: Fluid = AIR, after: Fluid = AIR) -> None:
         if not isinstance(cell, Cell):
             if not isinstance(cell, Layer | Iterable):
-                raise ValueError(f"cell: expected a Cell, got {cell!r}")
+                raise validate.refuse("cell", "a Cell", cell)
             cell = Cell(cell)  # type: ignore[arg-type]
         self._fill(((cell, as_count(periods, "periods")),), before, after)
 
     def _fill(self, segments: tuple[tuple[Cell, int], ...], before: Fluid, after: Fluid) -> None:
         for name, fluid in (("before", before), ("after", after)):
-            if not isinstance(fluid, Fluid):
-                raise ValueError(f"{name}: expected a Fluid, got {fluid!r}")
+            validate.instance(fluid, Fluid, name)
             if not callable(fluid.density) and fluid.density == 0:
                 raise ValueError(f"{name}: a half-space cannot have density 0")
         merged: list[tuple[Cell, int]] = []
@@ -289,11 +261,10 @@ class Slab:
     def stack(cls, segments: Iterable[tuple[Cell, int]], before: Fluid = AIR, after: Fluid = AIR) -> Slab:
         """A slab of several (cell, periods) pairs, from the near face on."""
         try:
-            pairs = tuple((cell, as_count(periods, "periods")) for cell, periods in segments)
-        except TypeError:
-            raise ValueError(f"segments: expected (cell, periods) pairs, got {segments!r}") from None
-        if not all(isinstance(cell, Cell) for cell, _ in pairs):
-            raise ValueError(f"segments: expected (Cell, periods) pairs, got {segments!r}")
+            given = [(cell, periods) for cell, periods in segments]
+        except (TypeError, ValueError):
+            raise validate.refuse("segments", "(Cell, periods) pairs", segments) from None
+        pairs = tuple((validate.instance(cell, Cell, "segments"), as_count(n, "periods")) for cell, n in given)
         if not pairs:
             raise ValueError("segments: expected at least one (cell, periods) pair, got none")
         slab = object.__new__(cls)
@@ -362,14 +333,15 @@ def lmmd_cell(
         Isotropic; evaluated at `design_frequency` if it is dispersive.
     """
     n_layers = as_count(n_layers, "n_layers")
+    memory.check("n_layers", 1000.0 * n_layers, f"{n_layers:.3g} layers", "take fewer")
     eta = as_number(eta, "eta", positive=True)
     design_frequency = as_number(design_frequency, "design_frequency", positive=True)
     delta_rho = as_number(delta_rho, "delta_rho")
-    rho_m = _as_complex(rho_m, "rho_m")
+    rho_m = as_complex(rho_m, "rho_m")
     if not np.isfinite(rho_m):
         raise ValueError(f"rho_m: expected a finite number, got {rho_m}")
-    if not isinstance(background, Fluid):
-        raise ValueError(f"background: expected a Fluid, got {background!r}")
+    validate.within(rho_m, "rho_m", zero=True)
+    validate.instance(background, Fluid, "background")
     values = background.at(design_frequency)
     k0 = float(background.wavenumber(design_frequency).real)
     if not (math.isfinite(k0) and k0 > 0):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .modes import BESIDE, LOSS, Mode, dispersion_of, located, told
+from .modes import BESIDE, Mode, dispersion_of, located, told
 from .response import dispersion
 from .roots import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
 from .scene import (

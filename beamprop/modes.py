@@ -43,17 +43,17 @@ def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
     return evaluate
 
 
-def find_modes(s: Scene, box: Box) -> tuple[list[Mode], int]:
-    """All modes in a box, and how many the argument principle counts.
+def find_modes(s: Scene, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
+    """All modes in a box, and how many the argument principle counts; `most`: see `zeros`.
 
     UncertainCount where outlines of other nodes, or changes of sign of a lossless slab, say otherwise.
     """
     f = dispersion_of(s)
-    total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, thorough=True) for nodes in (48, 61))
+    total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
     on_axis = real_zeros(f, box.left, box.right) if is_lossless(s) and box.low < 0 < box.high else []
     if total != again or len(on_axis) > total:
         raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
-    found = located(s, box, total) if total > 0 else []
+    found = located(s, box, total, most=most) if total > 0 else []
     modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in told(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
 

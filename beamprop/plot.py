@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from . import validate
 from ._plot_comparison import comparison as comparison
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
@@ -19,6 +20,8 @@ STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
 
 def _axes(ax: Any, size: tuple[float, float]) -> Any:
     if ax is not None:
+        if not hasattr(ax, "pcolormesh"):
+            raise validate.refuse("ax", "Axes of matplotlib", ax)
         return ax
     import matplotlib.pyplot as plt
 
@@ -26,8 +29,7 @@ def _axes(ax: Any, size: tuple[float, float]) -> Any:
 
 
 def _need(ds: xr.Dataset, *names: str) -> None:
-    if not isinstance(ds, xr.Dataset):
-        raise ValueError(f"ds: expected a Dataset, got {type(ds).__name__}")
+    validate.instance(ds, xr.Dataset, "ds")
     missing = [n for n in names if n not in ds.variables]
     if missing:
         raise ValueError(f"ds: expected a dataset with {', '.join(names)}; {', '.join(missing)} is missing")
@@ -37,11 +39,6 @@ def _title_of(v: Any) -> str:
     units = v.attrs.get("units", "")
     name = v.attrs.get("long_name", v.name)
     return name if units in ("", "1") else f"{name} [{units}]"
-
-
-def _chosen(quantity: str, options: tuple[str, ...]) -> None:
-    if quantity not in options:
-        raise ValueError(f"quantity: expected one of {', '.join(options)}, got {quantity!r}")
 
 
 def field(
@@ -65,7 +62,10 @@ def field(
     Axes
     """
     _need(ds, "p", "x", "z")
-    _chosen(quantity, ("abs", "real"))
+    validate.flag(colorbar, "colorbar")
+    if limit is not None:
+        limit = validate.as_number(limit, "limit", positive=True)
+    validate.word(quantity, "quantity", "abs", "real")
     p = ds["p"].squeeze(drop=True)
     if set(p.dims) != {"z", "x"}:
         raise ValueError(
@@ -138,8 +138,9 @@ def scattering(
     ax : Axes, optional
     label : str, optional
     """
-    _need(ds, quantity if quantity in ds else "transmissivity")
-    _chosen(quantity, ("transmissivity", "reflectivity", "energy_transmission", "absorption"))
+    validate.word(quantity, "quantity", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+    _need(ds, quantity)
+    validate.flag(log, "log")
     along = _lateral(ds)
     ax = _axes(ax, (5.2, 3.6))
     y = ds[quantity]
@@ -176,6 +177,8 @@ def bloch(
         Draw -kz too, which belongs to the contour.
     """
     _need(ds, "kz_over_k0")
+    for name, value in (("imaginary", imaginary), ("mirror", mirror)):
+        validate.flag(value, name)
     along = _lateral(ds)
     ax = _axes(ax, (5.2, 3.6))
     kz = ds["kz_over_k0"]

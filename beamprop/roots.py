@@ -21,6 +21,10 @@ class TooManyModes(ArithmeticError):
     """A search that would take too long."""
 
 
+class TooManyValues(TooManyModes):
+    """A search that takes more values than it may."""
+
+
 class UncertainCount(ArithmeticError):
     """Two counts of the same zeros that differ."""
 
@@ -43,7 +47,7 @@ def windings(
     A step is halved until both halves change log D by little and alike, and as D'/D at either end says: whole turns between two
     points do not show in D itself, and a slab of many waves' thickness makes many. Steps shorter than `finest` are left alone (a
     zero lies on the path). D'/D is taken everywhere if `thorough`, or if it is large at one of every SPARSE points: that sees
-    slabs that turn fast all along, and zeros that crowd. TooManyModes where that takes more than `most` steps.
+    slabs that turn fast all along, and zeros that crowd. TooManyValues where that takes more than `most` steps.
     """
     count, n = paths.shape
     onward = np.arange(1, n + 1) % n
@@ -52,7 +56,7 @@ def windings(
     some = slice(None, None, 1 if thorough else SPARSE)
     most -= paths.size
     if most < 0:
-        raise TooManyModes
+        raise TooManyValues
     # the path's points, the middles of its steps and points just behind some of the first in one call
     ask = np.concatenate([paths, (paths + ahead) / 2, (paths + beside)[:, some]], axis=1)
     values = logarithm(*f(ask, np.arange(count)))
@@ -74,7 +78,7 @@ def windings(
             return np.rint(total / (2 * np.pi)).astype(int)
         most -= 2 * np.count_nonzero(~calm)
         if most < 0:
-            raise TooManyModes
+            raise TooManyValues
         steps = _halved(f, steps, ~calm, count == 1)
 
 
@@ -222,7 +226,7 @@ CLUSTER = 1e-6
 def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.inf) -> list[complex]:
     """The `total` zeros of D inside a box, by halving it until Newton's method has one to find; of a cluster, its middle.
 
-    TooManyModes where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
+    TooManyValues where that takes more than `most` values of D along one outline, or more than `most` / 200 outlines.
     """
     found: list[complex] = []
     outlines = 0
@@ -245,7 +249,7 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
             inside = winding(f, half.outline(), 1e-9 * scale, most, thorough=math.isinf(most))
             outlines += 1
             if outlines > most / 200:
-                raise TooManyModes
+                raise TooManyValues
             if inside > 0:
                 todo.append((half, inside))
     return found

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import lines, misplaced, propagate, spectral, transfers
+from . import fft, lines, misplaced, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
@@ -149,7 +149,7 @@ class Route(NamedTuple):
     """How a beam gets to the plane that is measured, at F frequencies."""
 
     scene: Scene
-    plane: Plane
+    plane: Callable[[Scene, np.ndarray], Plane]  #: of a scene and the lengths along z
     transfer: Callable[[Scene], Transfer]  #: the same for the scene of one frequency
     z: np.ndarray  #: (F,) where that transfer meets the plane
     path: np.ndarray  #: (F,) length along z
@@ -160,24 +160,45 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     """Width, peak and centroid of the profiles across one plane per frequency."""
     s = route.scene
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
-    count = s.omega.shape[0]
-    out = Measures(*(np.full(count, np.nan) for _ in Measures._fields))
-    good = np.zeros(count, bool)
-    if beam.entire:
-        middle, half = landing(s, beam, route.plane)
-        plan = _plan(s, beam, route.path, middle, half, rtol)
-        if np.max(plan.band * plan.window) < 2 * np.pi * 20_000:
-            first, second = _both_modes(s, beam, route.plane, plan)
-            out, good = _measured(first, second, plan, middle - beam.centre, half, level, rtol)
-            out = out._replace(centroid=out.centroid + beam.centre)
-            if route.guided:
-                good &= ~_backward(s, plan)
+    out, good = _together(route, beam, rtol, level)
     for i in np.flatnonzero(~good):
         one = at_frequency(s, int(i))
         found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
         for values, value in zip(out, found, strict=True):
             values[i] = value
     return out
+
+
+#: The most plane waves of all frequencies that are worked on at a time, and of one of them.
+MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
+
+
+def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
+    """Measures at all frequencies by the fast path, in halves where that takes many plane waves, and which are good."""
+    s, count = route.scene, route.scene.omega.shape[0]
+    out, good = Measures(*(np.full(count, np.nan) for _ in Measures._fields)), np.zeros(count, bool)
+    if not beam.entire:
+        return out, good
+    plane = route.plane(s, route.path)
+    middle, half = landing(s, beam, plane)
+    plan = _plan(s, beam, route.path, middle, half, rtol)
+    size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
+    if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
+        halves = [_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)]
+        found = Measures(*(np.concatenate(pair) for pair in zip(*(m for m, _ in halves), strict=True)))
+        return found, np.concatenate([some for _, some in halves])
+    if size < MOST_OF_ONE:
+        first, second = _both_modes(s, beam, plane, plan)
+        out, good = _measured(first, second, plan, middle - beam.centre, half, level, rtol)
+        out = out._replace(centroid=out.centroid + beam.centre)
+        if route.guided:
+            good &= ~_backward(s, plan)
+    return out, good
+
+
+def _taken(route: Route, rows: np.ndarray) -> Route:
+    """Some frequencies of a route."""
+    return route._replace(scene=at_frequency(route.scene, rows), z=route.z[rows], path=route.path[rows])
 
 
 def _backward(s: Scene, plan: OpenPlan) -> np.ndarray:
@@ -195,13 +216,13 @@ def _sampled(modal: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
     """p on an even grid over each whole window: x and p, (F, n)."""
     line = modal.line
     m = line.first + np.arange(line.k.shape[-1])
-    n = spectral.fast_length(3 * int(np.max(np.abs(m))) + 1)
+    n = fft.fast_length(3 * int(np.max(np.abs(m))) + 1)
     x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
     bins = np.zeros((2, *line.k.shape[:-1], n), complex)
     turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
     bins[0][:, m % n] = modal.right * turn
     bins[1][:, -m % n] = modal.left * np.conj(turn)
-    right, left = spectral.transform(bins)
+    right, left = fft.transform(bins)
     grow = np.exp(line.sigma[:, None] * x)
     return x, right * grow + left / grow
 
@@ -346,14 +367,21 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         alone = s._replace(branches=(s.k0 + 0j,))
-        route = Route(alone, without(s, distance), transfers.free, distance, distance, False)
+        route = Route(alone, without, transfers.free, distance, distance, False)
         found = measure(route, beam, rtol)
         return found.width, found.crossings, found.error
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
     face = np.full(s.k0.shape, s.thickness)
-    through = Route(s, far_face(s, beam.z0), lambda one: transfers.through(one, beam.z0), face, face - beam.z0, True)
+    through = Route(
+        s,
+        lambda some, _: far_face(some, beam.z0),
+        lambda one: transfers.through(one, beam.z0),
+        face,
+        face - beam.z0,
+        True,
+    )
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
     widths, met, errors = zip(launch, near, (far.width, far.crossings, far.error), air, strict=True)

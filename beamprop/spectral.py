@@ -1,4 +1,4 @@
-"""Lines of integration over kx, and the sums over them. The only user of an FFT library.
+"""Lines of integration over kx, and the sums over them.
 
 A plain sum over equispaced real kx answers for a periodic array of beams: a lossless slab has guided modes, poles of t on
 the real axis beyond k0, beside the branch points at +-k0, and no window makes the sum converge. In open space the path of
@@ -33,6 +33,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .fft import fast_length as fast_length
+from .fft import plan_for
+from .memory import POINTS_AT_A_TIME
 from .products import product
 
 EPS = float(np.finfo(float).eps)
@@ -158,7 +161,7 @@ class BentPlan(NamedTuple):
         )
 
     @property
-    def count(self) -> float:
+    def nodes(self) -> float:
         """About how many nodes the contour takes."""
         graded = self.grading * math.asinh(self.band / self.sharp) if self.grading else 0.0
         return (self.band - self.low) * self.window / (2 * math.pi) + graded
@@ -305,6 +308,12 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
     With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
     """
     # plain: h @ (right[:, None] * exp(i k x) + left[:, None] * exp(-i k x))
+    if x.size > POINTS_AT_A_TIME:
+        whole = np.empty((*right.shape[:-1], h.shape[0], x.size), complex)
+        for start in range(0, x.size, POINTS_AT_A_TIME):
+            few = slice(start, start + POINTS_AT_A_TIME)
+            whole[..., few] = direct_sum(line, h, right, left, x[few])
+        return whole
     block = max(1, MOST_PHASES // max(1, x.size))
     if line.k.size > block:
         parts = [slice(start, start + block) for start in range(0, line.k.size, block)]
@@ -332,13 +341,13 @@ class Grid(NamedTuple):
 
     start: float
     step: float
-    count: int
+    points: int
     offsets: np.ndarray | None
 
     @property
     def even(self) -> np.ndarray:
         """The even grid's own positions."""
-        return self.start + self.step * np.arange(self.count)
+        return self.start + self.step * np.arange(self.points)
 
     @property
     def unevenness(self) -> float:
@@ -391,80 +400,6 @@ def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
     return out.reshape(coarse.shape[0], -1)[:, :count]
 
 
-class _Plan(NamedTuple):
-    """Two FFTs: sum_m c_m e^{2 pi i m j/n} of source[0] (rows, n) into result[0], e^{-2 pi i m j/n} of 1; unscaled."""
-
-    source: np.ndarray
-    result: np.ndarray
-    run: tuple[Any, Any]
-
-
-@functools.lru_cache(maxsize=16)
-def _plan(rows: int, n: int) -> _Plan:
-    """Buffers and the transforms between them. Out of place: faster where FFTW estimates, and a source keeps its zeros."""
-    try:
-        import pyfftw
-    except ImportError:  # no wheel for this platform
-        return _scipy_plan(rows, n)
-    source, result = (pyfftw.zeros_aligned((2, rows, n), dtype="complex128") for _ in range(2))
-    # ESTIMATE plans in less than a millisecond; MEASURE takes 0.2 to 0.6 s a shape and gains no more than a fifth
-    plans = [
-        pyfftw.FFTW(source[i], result[i], axes=(1,), direction=direction, flags=("FFTW_ESTIMATE",))
-        for i, direction in enumerate(("FFTW_BACKWARD", "FFTW_FORWARD"))
-    ]
-    return _Plan(source, result, (plans[0].execute, plans[1].execute))
-
-
-def _scipy_plan(rows: int, n: int) -> _Plan:
-    """The same by scipy, a third slower."""
-    import scipy.fft
-
-    source, result = (np.zeros((2, rows, n), complex) for _ in range(2))
-
-    def backward() -> None:
-        result[0] = scipy.fft.ifft(source[0], axis=1, norm="forward")
-
-    def forward() -> None:
-        result[1] = scipy.fft.fft(source[1], axis=1)
-
-    return _Plan(source, result, (backward, forward))
-
-
-def transform(coefficients: np.ndarray) -> np.ndarray:
-    """sum_m c_m e^{2 pi i m j/n} along the last axis, unscaled."""
-    flat = coefficients.reshape(-1, coefficients.shape[-1])
-    plan = _plan(*flat.shape)
-    plan.source[0] = flat
-    plan.run[0]()
-    return plan.result[0].reshape(coefficients.shape).copy()
-
-
-def fast_length(n: int) -> int:
-    """A length that an FFT likes: 2^a or 5 2^a up to an eighth longer than asked, else the next 2^a 3^b 5^c.
-
-    Factors of 3 cost: 1152 and 1296 points take twice as long as 1280 (FFTW, plans by estimate).
-    """
-    powers = [f << max(0, math.ceil(math.log2(n / f))) for f in (1, 5)]
-    longer = [m for m in powers if n <= m <= 1.125 * n]
-    return min(longer) if longer else next_smooth(n)
-
-
-def next_smooth(n: int) -> int:
-    """The next 2^a 3^b 5^c."""
-    best = 1 << max(0, (n - 1).bit_length())
-    five = 1
-    while five < best:
-        three = five
-        while three < best:
-            two = three
-            while two < n:
-                two *= 2
-            best = min(best, two)
-            three *= 3
-        five *= 5
-    return best
-
-
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
     """h (rows, count) times each amplitude (2, rows or 1, count), into bins first, first + 1, ... modulo n of out (2, rows, n).
 
@@ -507,7 +442,7 @@ def fft_sum(
     flat = np.empty((total, x.size), complex) if out is None else out.reshape(-1, x.size)
     real = flat.view(float)
     rows = max(1, min(total, 2**14 // n))
-    plan = _plan(rows, n)
+    plan = plan_for(rows, n)
     plan.source[...] = 0
     result = plan.result[..., : x.size].view(float)
     # plain: flat = grow ifft(right h) + fft(left h)/grow
@@ -550,7 +485,7 @@ def grid_sum(
         return p
     ik = 1j * line.k
     beams = right.size // right.shape[-1]
-    rows = max(1, SLOPES // (grid.count * beams))
+    rows = max(1, SLOPES // (grid.points * beams))
     for start in range(0, h.shape[0], rows):
         part = slice(start, start + rows)
         slope = fft_sum(line, h[part], right * ik, -left * ik, grid.even, n)

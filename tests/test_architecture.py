@@ -16,12 +16,15 @@ CHECKOUT = Path(__file__).parent.parent
 ORDER = [
     "_version",
     "conventions",
+    "memory",
+    "validate",
     "media",
     "homogenize",
     "products",
     "response",
     "beam",
     "widths",
+    "fft",
     "spectral",
     "scene",
     "roots",
@@ -51,18 +54,21 @@ ORDER = [
 #: Those that see less than all that stands before them.
 ONLY = {
     "conventions": set(),
+    "memory": set(),
+    "validate": {"memory"},
     "widths": set(),
-    "spectral": {"products"},
+    "fft": {"memory"},
+    "spectral": {"products", "fft", "memory"},
     "roots": set(),
-    "media": {"conventions"},
-    "homogenize": {"conventions", "media"},
+    "media": {"conventions", "memory", "validate"},
+    "homogenize": {"conventions", "validate", "media"},
     "response": {"conventions", "media", "products"},
-    "beam": {"conventions", "media"},
-    "fem": {"conventions", "media", "beam", "datasets"},
-    "comsol": {"conventions", "datasets"},
-    "storage": {"conventions", "datasets"},
-    "_plot_comparison": {"conventions"},
-    "plot": {"conventions", "_plot_comparison"},
+    "beam": {"conventions", "memory", "validate", "media"},
+    "fem": {"conventions", "memory", "validate", "media", "beam", "datasets"},
+    "comsol": {"conventions", "memory", "validate", "datasets"},
+    "storage": {"conventions", "validate", "datasets"},
+    "_plot_comparison": {"conventions", "validate"},
+    "plot": {"conventions", "validate", "_plot_comparison"},
 }
 
 
@@ -131,16 +137,16 @@ def test_the_checker_sees_imports():
         *map(own_imports, files_of("questions"))
     )
     assert {"homogenize", "storage", "questions", "plot"} <= set().union(*map(own_imports, files_of("cli")))
-    assert "pyfftw" in set().union(*map(other_imports, files_of("spectral")))
+    assert "pyfftw" in set().union(*map(other_imports, files_of("fft")))
     assert len(FILES) >= 18
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_one_user_of_fft_libraries(module):
-    """spectral alone imports pyfftw or scipy.fft."""
+    """fft alone imports pyfftw or scipy.fft."""
     for path in files_of(module):
         fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
-        assert not fft or module == "spectral"
+        assert not fft or module == "fft"
 
 
 def makes_datasets(path):
@@ -172,8 +178,21 @@ def test_one_branch_of_the_square_root():
     assert homes == ["conventions", "conventions"]
 
 
+def test_one_home_of_checks():
+    """What is a number, a count, an axis, an angle, a path is decided in validate, and what fits in memory."""
+    names = {"as_number", "as_count", "as_path", "instance", "flag", "word"}
+    homes = {
+        (node.name, FILES[path])
+        for path in FILES
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.FunctionDef) and node.name in names | {"available"}
+    }
+    assert homes == {(name, "validate") for name in names} | {("available", "memory")}
+
+
 @pytest.mark.parametrize(
-    "module", ["conventions", "media", "homogenize", "response", "beam", "widths", "spectral", "lines", "propagate"]
+    "module",
+    ["conventions", "media", "homogenize", "response", "beam", "widths", "fft", "spectral", "lines", "propagate"],
 )
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""

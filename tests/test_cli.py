@@ -324,6 +324,13 @@ WRONG = [
     ("bloch", ["--eta", "-1"], "eta"),
     ("width", [*P, "--after-density", "0"], "density"),
     ("width", [*P, "--after-speed", "0"], "speed"),
+    ("width", [*P, "--frequency", "2000:3000:1000000000000"], "--frequency"),
+    ("width", [*P, "--frequency", "2000:3000:0"], "--frequency"),
+    ("width", ["--periods", "1" + 400 * "0"], "periods"),
+    ("width", [*P, "--fwhm", "1e-200"], "fwhm"),
+    ("field", [*P, "--x", "0:1:1000000", "--z", "0:1:1000000"], "x"),
+    ("field", [*P, "--frequency", "1e155"], "frequency"),
+    ("spectrum", [*P, "--frequency", "1:2:10000000", "--kx", "0:1:10000000"], "kx"),
 ]
 
 

@@ -6,7 +6,20 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import conventions, fan, judge, lines, planes, products, propagate, response, scene, sections, spectral
+from beamprop import (
+    conventions,
+    fan,
+    fft,
+    judge,
+    lines,
+    planes,
+    products,
+    propagate,
+    response,
+    scene,
+    sections,
+    spectral,
+)
 from beamprop.media import layer_values
 from beamprop.response import cells, inside, march
 from beamprop.response import layers as one
@@ -393,9 +406,9 @@ def test_a_plan_has_come_to_rest(seed):
 def test_fast_lengths():
     lengths = sorted(2**a * 3**b * 5**c for a in range(13) for b in range(9) for c in range(6))
     for n in (1, 2, 7, 11, 97, 1025, 1331, 2049, 4000):
-        assert spectral.next_smooth(n) == min(m for m in lengths if m >= n)
-        assert n <= spectral.fast_length(n) <= max(1.125 * n, spectral.next_smooth(n))
-    assert [spectral.fast_length(n) for n in (1, 2, 5, 1020, 1100, 1199, 1300, 1440)] == [
+        assert fft.next_smooth(n) == min(m for m in lengths if m >= n)
+        assert n <= fft.fast_length(n) <= max(1.125 * n, fft.next_smooth(n))
+    assert [fft.fast_length(n) for n in (1, 2, 5, 1020, 1100, 1199, 1300, 1440)] == [
         1,
         2,
         5,

@@ -33,20 +33,26 @@ class Axis(click.ParamType):
     def convert(self, value: Any, param: Any, ctx: Any) -> Any:
         if not isinstance(value, str):
             return value
+        from .. import memory
+
         try:
-            if ":" in value:
-                start, stop, count = value.split(":")
-                return spaced(float(start), float(stop), int(count))
-            numbers = [float(v) for v in value.split(",")]
+            if ":" not in value:
+                numbers = [float(v) for v in value.split(",")]
+                return numbers[0] if len(numbers) == 1 else numbers
+            start, stop, count = (kind(v) for kind, v in zip((float, float, int), value.split(":"), strict=True))
+            if count < 1:
+                raise ValueError
         except ValueError:
             self.fail(f"expected a number, a,b,c or start:stop:count, got {value!r}", param, ctx)
-        return numbers[0] if len(numbers) == 1 else numbers
+        try:
+            memory.check(f"count of {value!r}", 80.0 * count, "an axis", "ask for fewer points")
+        except ValueError as error:
+            self.fail(str(error), param, ctx)
+        return spaced(start, stop, count)
 
 
 def spaced(start: float, stop: float, count: int) -> list[float]:
     """Evenly spaced numbers, both ends exact."""
-    if count < 1:
-        raise ValueError(count)
     step = (stop - start) / max(1, count - 1)
     return [start + i * step for i in range(count - 1)] + [stop if count > 1 else start]
 

@@ -17,12 +17,13 @@ names the file, the line, what was expected and what came.
 from __future__ import annotations
 
 import warnings
-from os import PathLike, fspath
+from os import PathLike
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from .. import memory, validate
 from .assemble import make_dataset
 from .forms import READERS, SECTION
 from .text import ANGLES, LENGTHS, PRESSURE_UNITS, length_factor, plain_unit, scan
@@ -68,6 +69,8 @@ def read_comsol(
     ------
     ValueError
         What cannot be read without doubt, with the file, the line, what was expected and what came.
+    OSError
+        The file cannot be opened.
 
     Warns
     -----
@@ -75,7 +78,7 @@ def read_comsol(
         Combinations of parameters that are missing (NaN in the dataset), and everything that had to be assumed.
     """
     _check_arguments(x, z, expression, conjugate, length_unit, angle_unit)
-    source = scan(fspath(path))
+    source = scan(str(validate.as_path(path)))
     factor = length_factor(source, length_unit)
     kinds = [m[1].lower() for _, text in source.header if (m := SECTION.fullmatch(text))]
     table = READERS.get(kinds[0] if kinds else "", READERS["spreadsheet"])(source, factor)
@@ -101,11 +104,22 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     """
     if not isinstance(ds, xr.Dataset) or "node" not in ds.dims:
         raise ValueError(f"ds: expected a dataset with the dim 'node', got {getattr(ds, 'dims', type(ds).__name__)}")
-    axes = {"x": axis(x, "x"), "z": axis(z, "z")}
+    axes = {name: validate.positions(v, name, increasing=True) for name, v in (("x", x), ("z", z))}
+    points = axes["x"].size * axes["z"].size
+    memory.check("x", 120.0 * points, f"a grid of {points:.3g} points", "take fewer points")
+    missing = [n for n in ("x", "z") if n not in ds.variables or ds[n].dims != ("node",)]
+    if missing:
+        raise ValueError(f"ds: expected coordinates x and z of the nodes, got none for {', '.join(missing)}")
+    nodes = [validate.positions(ds[n].values, f"{n} of the nodes") for n in ("x", "z")]
     from scipy.interpolate import LinearNDInterpolator
-    from scipy.spatial import Delaunay
+    from scipy.spatial import Delaunay, QhullError
 
-    triangles = Delaunay(np.stack([ds.x.values, ds.z.values], axis=-1))
+    try:
+        triangles = Delaunay(np.stack(nodes, axis=-1))
+    except QhullError:
+        raise ValueError(
+            f"ds: expected three nodes or more that span a plane, got {nodes[0].size} that do not"
+        ) from None
     targets = np.stack(np.meshgrid(axes["x"], axes["z"]), axis=-1)
     out = ds.drop_dims("node")
     for name in ("x", "z"):
@@ -120,21 +134,12 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     return out
 
 
-def axis(values: Any, name: str) -> np.ndarray:
-    """A strictly increasing 1-D axis, or a ValueError that names the argument."""
-    values = np.asarray(values, dtype=float)
-    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or np.any(np.diff(values) <= 0):
-        raise ValueError(f"{name}: expected a 1-D array of finite, strictly increasing positions, got {values!r}")
-    return values
-
-
 def _check_arguments(x: Any, z: Any, expression: Any, conjugate: Any, length_unit: Any, angle_unit: Any) -> None:
     names = {"x": x, "z": z, "expression": expression, "length_unit": length_unit, "angle_unit": angle_unit}
     for name, value in names.items():
         if value is not None and not (isinstance(value, str) and value.strip()):
-            raise ValueError(f"{name}: expected a name, got {value!r}")
-    if not isinstance(conjugate, bool | np.bool_):
-        raise ValueError(f"conjugate: expected True or False, got {conjugate!r}")
+            raise validate.refuse(name, "a name", value)
+    validate.flag(conjugate, "conjugate")
     if x is not None and x == z:
         raise ValueError(f"z: expected another coordinate than x, got {z!r} for both")
     for name, table in (("length_unit", LENGTHS), ("angle_unit", ANGLES)):

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import datasets
+from .. import datasets, validate
 from ..beam import Beam
-from ..media import Slab, as_number
+from ..media import Slab
 from . import boundary, solvers, strip
 from .task import Plan, Task, make_task, predict, wavenumber
 
@@ -119,13 +119,6 @@ def _warn_guided(task: Task, found: boundary.Orders, near: np.ndarray, far: np.n
 
 
 # --- the question -----------------------------------------------------------------------------------------
-
-
-def _positions(values: Any, name: str) -> np.ndarray:
-    out = np.asarray(values, dtype=float)
-    if out.ndim != 1 or out.size == 0 or not np.all(np.isfinite(out)):
-        raise ValueError(f"{name}: expected a 1-D array of finite positions, got {values!r}")
-    return out
 
 
 def _check_memory(found: Plan, memory_limit: float) -> None:
@@ -250,14 +243,14 @@ def field(
     they bring.
     """
     began = time.perf_counter()
-    x, z = _positions(x, "x"), _positions(z, "z")
+    x, z = validate.positions(x, "x"), validate.positions(z, "z")
     if angle is not None and isinstance(beam, Beam):
-        beam = beam.at_angle(as_number(angle, "angle"))
+        beam = beam.at_angle(validate.angle(angle))
     task = make_task(slab, beam, frequency, period, order, elements_x, method, layer_rows)
     if z.min() < beam.z0:
         raise ValueError(f"z: expected positions from the launch plane z0 = {beam.z0} m on, got {z.min()}")
     expected = predict(task)
-    _check_memory(expected, as_number(memory_limit, "memory_limit", positive=True))
+    _check_memory(expected, validate.as_number(memory_limit, "memory_limit", positive=True))
     _check_window(task)
     with _Bar(task, progress) as bar:
         mesh, found, ends, solution, residual = _solve(task, bar.step)

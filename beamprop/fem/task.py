@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from .. import memory, validate
 from ..beam import Beam
-from ..media import Slab, as_count, as_number
+from ..media import Slab
+from ..validate import as_count, as_number
 from . import boundary, solvers, strip
 
 #: An order this share of the mesh's highest or lower is resolved as well as the errors of
@@ -53,12 +55,9 @@ class Task:
 
 
 def _check(slab: Any, beam: Any, frequency: Any, period: Any, order: Any, method: Any) -> tuple[float, float, int]:
-    if not isinstance(slab, Slab):
-        raise ValueError(f"slab: expected a Slab, got {slab!r}")
-    if not isinstance(beam, Beam):
-        raise ValueError(f"beam: expected a beam such as GaussianBeam, got {beam!r}")
-    if method not in solvers.SOLVERS:
-        raise ValueError(f"method: expected 'superelement' or 'sparse', got {method!r}")
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    validate.word(method, "method", *solvers.SOLVERS)
     order = as_count(order, "order")
     if order not in strip.SIZE_OVER_WAVELENGTH:
         raise ValueError(f"order: expected 1, 2, 3 or 4, got {order}")
@@ -80,7 +79,9 @@ def _mesh_orders(slab: Slab, beam: Beam, frequency: float, period: float, order:
     orders with more than 1e-4 of the strongest on the near face stay within `RESOLVED_SHARE` of the mesh's
     highest.
     """
-    usual = max(4, math.ceil(period * wavenumber(slab, frequency) / (2 * math.pi * strip.SIZE_OVER_WAVELENGTH[order])))
+    across = period * wavenumber(slab, frequency) / (2 * math.pi * strip.SIZE_OVER_WAVELENGTH[order])
+    memory.check("period", 400.0 * order * across, f"{across:.3g} elements along x", "take a shorter period")
+    usual = max(4, math.ceil(across))
     found = boundary.orders(slab, beam, frequency, period, math.ceil(RESOLVED_SHARE * FINEST * usual * order / 2))
     strength = np.abs(found.incident)
     middle = strength.size // 2
@@ -97,6 +98,8 @@ def make_task(
     elements_x = usual if elements_x is None else as_count(elements_x, "elements_x")
     kx = max(2 * math.pi / period * highest, wavenumber(slab, frequency))
     segments = strip.slab_rows(slab, frequency, kx, order, as_count(layer_rows, "layer_rows"))
+    lines = float(sum(count * periods for rows, periods in segments for _, count in rows))
+    memory.check("slab", 100.0 * lines, f"{lines:.3g} rows of elements", "take a thinner slab or fewer layer_rows")
     return Task(slab, beam, frequency, period, order, elements_x, method, segments, strip.layout(segments, order))
 
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, sections, widths
+from .. import datasets, memory, sections, validate, widths
 from ..beam import Beam, moved_to_origin
-from ..media import Slab, as_number
+from ..media import Slab
 from ..scene import scenes
 from . import checks
 from .checks import Progress
@@ -65,9 +65,11 @@ def field(
     Raises
     ------
     ValueError
-        Names the argument, what was expected and what came.
+        Names the argument, what was expected and what came; also for what does not fit into memory.
     """
+    validate.function(progress, "progress")
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    memory.check_field(asked.shape)
     p = np.empty(asked.shape, complex)
     for i, _ in enumerate(progress(asked.frequency)):
         asked.choose(i)
@@ -116,13 +118,15 @@ def beam_width(
     AccuracyWarning
         The estimated error of |p| in one of the planes is above rtol.
     """
-    checks.instance(slab, Slab, "slab")
-    checks.instance(beam, Beam, "beam")
-    f = checks.axis(frequency, "frequency", positive=True)
-    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
+    validate.function(progress, "progress")
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
     if air_distance is not None:
-        air_distance = as_number(air_distance, "air_distance", positive=True)
+        air_distance = validate.as_number(air_distance, "air_distance", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    memory.check_table(flat.size * flat_angles.size, 60.0)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
     most, worst = np.zeros(4, int), 0.0
@@ -182,12 +186,10 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
         In the units of `dim`, located on a cubic spline of the samples; nan with a warning where the half level is not
         reached inside the window, and a warning where it is met more than twice.
     """
-    if not isinstance(profile, xr.DataArray):
-        raise ValueError(f"profile: expected a DataArray, got {type(profile).__name__}")
-    if dim not in profile.dims:
+    validate.instance(profile, xr.DataArray, "profile")
+    if not isinstance(dim, str) or dim not in profile.dims:
         raise ValueError(f"dim: expected one of {', '.join(map(str, profile.dims))}, got {dim!r}")
-    if width_of not in widths.HALF_LEVEL:
-        raise ValueError(f"width_of: expected 'pressure' or 'intensity', got {width_of!r}")
+    validate.word(width_of, "width_of", *widths.HALF_LEVEL)
     if profile.sizes[dim] < 4:
         raise ValueError(f"profile: expected at least 4 samples along {dim}, got {profile.sizes[dim]}")
     ordered = profile.sortby(dim)

@@ -1,4 +1,4 @@
-"""Checks of public arguments: ValueErrors that name the argument, what was expected and what came."""
+"""What the questions share about their arguments beyond plain checks of values: angles, kx, labels of axes, warnings."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from .. import memory, validate
 from ..beam import Beam, sin_degrees
-from ..media import Fluid, Slab, as_number
+from ..media import Fluid, Slab
 
 #: Wraps the items of a loop, to watch it.
 Progress = Callable[[Iterable[Any]], Iterable[Any]]
@@ -29,46 +30,9 @@ def announce(error: float, rtol: float, stacklevel: int = 3) -> None:
         )
 
 
-def axis(value: Any, name: str, *, kind: type = float, positive: bool = False) -> np.ndarray:
-    """A scalar or 1-D array of finite numbers, as an array; ValueErrors name the argument."""
-    try:
-        array = np.asarray(value)
-        array = array.astype(kind) if kind is complex or not np.iscomplexobj(array) else array
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: expected a number or a 1-D array of numbers, got {value!r}") from None
-    if np.iscomplexobj(array) and kind is not complex:
-        raise ValueError(f"{name}: expected real numbers, got complex ones")
-    if array.ndim > 1 or array.size == 0:
-        raise ValueError(f"{name}: expected a number or a 1-D array of at least one, got shape {array.shape}")
-    if not np.all(np.isfinite(array)):
-        raise ValueError(f"{name}: expected finite values, got {array[~np.isfinite(array)].flat[0]}")
-    if positive and np.any(array <= 0):
-        raise ValueError(f"{name}: expected values above zero, got {array.min()}")
-    return array
-
-
-def instance(value: Any, cls: Any, name: str) -> None:
-    """A ValueError unless value is an instance of cls."""
-    if not isinstance(value, cls):
-        raise ValueError(f"{name}: expected a {cls.__name__}, got {value!r}")
-
-
 def angles(angle: Any, beam: Beam) -> np.ndarray:
     """The asked angles of a beam [degree], its own by default."""
-    values = axis(beam.angle if angle is None else angle, "angle")
-    if np.any(np.abs(values) >= 90):
-        raise ValueError(
-            f"angle: expected degrees from the normal, between -90 and 90, got {values[np.abs(values) >= 90].flat[0]}"
-        )
-    return values
-
-
-def rtol(given: Any) -> float:
-    """An rtol that double precision can keep."""
-    value = as_number(given, "rtol", positive=True)
-    if not 1e-12 <= value <= 0.1:
-        raise ValueError(f"rtol: expected a value from 1e-12 to 0.1, got {given!r}")
-    return value
+    return validate.angles(beam.angle if angle is None else angle)
 
 
 def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:
@@ -92,19 +56,25 @@ def one_of(**options: Any) -> tuple[str, Any]:
     return next(iter(given.items()))
 
 
-def lateral(name: str, value: Any, k0_at: Any, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed."""
-    values = axis(value, name, kind=float if name == "angle" else complex)
+def lateral(
+    name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+
+    `bytes_each` is what the answer to one plane wave holds.
+    """
+    values = validate.angles(value, grazing=True) if name == "angle" else validate.axis(value, name, kind=complex)
     if not np.any(values.imag):
         values = values.real
     flat = np.atleast_1d(values)
+    memory.check_waves(frequency.size * flat.size, flat.size, name, bytes_each)
     if name == "kx":
         return values, np.broadcast_to(flat, (frequency.size, flat.size))
     if name == "angle":
-        if np.any(np.abs(flat) > 90):
-            raise ValueError(f"angle: expected degrees from -90 to 90, got {flat[np.abs(flat) > 90][0]}")
         flat = sin_degrees(flat)
-    return values, np.atleast_1d(k0_at(frequency))[:, None] * flat
+    kx = np.atleast_1d(k0_at(frequency))[:, None] * flat
+    validate.within(kx, name, zero=True)
+    return values, kx
 
 
 def dims(**axes: np.ndarray) -> tuple[tuple[str, ...], tuple[Any, ...]]:

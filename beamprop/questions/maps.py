@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .. import datasets, lines, propagate, spectral, transfers
+from .. import datasets, lines, propagate, spectral, transfers, validate
 from ..beam import Beam, moved_to_origin
 from ..fan import Fan, fan
-from ..media import Slab, as_number
+from ..media import Slab
 from ..scene import Scene, scene
 from . import checks
 
@@ -30,12 +30,11 @@ class FieldMap:
         period: float | None,
         rtol: float,
     ) -> None:
-        checks.instance(slab, Slab, "slab")
-        checks.instance(beam, Beam, "beam")
-        f, xs, zs = checks.axis(frequency, "frequency", positive=True), checks.axis(x, "x"), checks.axis(z, "z")
-        angles, self.rtol = checks.angles(angle, beam), checks.rtol(rtol)
-        if boundary not in ("open", "periodic"):
-            raise ValueError(f"boundary: expected 'open' or 'periodic', got {boundary!r}")
+        validate.instance(slab, Slab, "slab")
+        validate.instance(beam, Beam, "beam")
+        f, xs, zs = validate.axis(frequency, "frequency", positive=True), validate.axis(x, "x"), validate.axis(z, "z")
+        angles, self.rtol = checks.angles(angle, beam), validate.rtol(rtol)
+        validate.word(boundary, "boundary", "open", "periodic")
         if np.min(zs) < beam.z0:
             raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
         self.slab, self.beam, self.boundary, self.period = slab, beam, boundary, period
@@ -111,7 +110,7 @@ def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.nd
         if not dx:
             raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
         period = dx * x.size
-    value = as_number(period, "period", positive=True)
+    value = validate.as_number(period, "period", positive=True)
     k0 = float(checks.k0(slab, frequency)[0])
     across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
     seam = float(max(abs(across[0]), abs(across[-1])) / np.abs(across).max())

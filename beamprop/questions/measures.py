@@ -11,11 +11,11 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import simpson
 
-from .. import datasets, lines, propagate, spectral, widths
+from .. import datasets, lines, memory, propagate, spectral, validate, widths
 from ..beam import Beam
 from ..conventions import outgoing_kz
 from ..fan import single
-from ..media import FluidValues, Slab, as_number
+from ..media import FluidValues, Slab
 from ..response import solve
 from ..scene import Scene, real_branches, scene
 from . import checks
@@ -102,12 +102,14 @@ def beam_measures(
     AccuracyWarning
         The estimated error of a beam's |p| is above rtol.
     """
-    checks.instance(slab, Slab, "slab")
-    checks.instance(beam, Beam, "beam")
-    f = checks.axis(frequency, "frequency", positive=True)
-    angles, rtol = checks.angles(angle, beam), checks.rtol(rtol)
-    half = None if window is None else as_number(window, "window", positive=True)
+    validate.function(progress, "progress")
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    half = None if window is None else validate.as_number(window, "window", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
+    memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
     worst = 0.0
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
@@ -282,7 +284,9 @@ def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tu
     if k == 0:
         return 0.0, math.nan, math.nan
     extent = beam.reach(1e-6) + s.thickness - beam.z0
-    line = spectral.propagating_line(k, real_branches(s), int(200 + 2 * k * extent))
+    count = 200 + 2 * k * extent
+    memory.check_contour(count)
+    line = spectral.propagating_line(k, real_branches(s), int(count))
     kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
     flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
     right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from .. import datasets, modes, response, roots
+from .. import datasets, memory, modes, response, roots, validate
 from ..conventions import outgoing_kz
-from ..media import AIR, Cell, Fluid, Slab, as_number, layer_values, materials, slab_values
+from ..media import AIR, Cell, Fluid, Slab, layer_values, materials, slab_values
 from ..scene import last_branch, scene
 from . import checks
 
@@ -57,47 +59,63 @@ def scattering(
     ValueError
         Names the argument, what was expected and what came.
     """
-    checks.instance(slab, Slab, "slab")
-    f = checks.axis(frequency, "frequency", positive=True)
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat)
-    before, after = slab.before.at(flat), slab.after.at(flat)
-    omega = 2 * np.pi * flat[:, None]
-    res, errors = _solved(slab, flat, omega, k, estimate)
-    with np.errstate(over="ignore"):
-        reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
-    if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
-        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    energy, absorption = _energies(reflectivity, transmissivity, k, omega, before, after)
+    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
+    names = WAVES + (ERRORS if estimate else ())
+    variables = {n: np.empty(k.shape, complex if n in ("r", "t") else float) for n in names}
+    for rows, columns in _blocks(k.shape):
+        answers = _answer(slab, flat[rows], k[rows, columns], name, estimate)
+        for whole, part in zip(variables.values(), answers, strict=True):
+            whole[rows, columns] = part
     dims, pick = checks.dims(frequency=f, **{name: axis})
-    variables = {
-        "r": res.r,
-        "t": res.t,
-        "transmissivity": transmissivity,
-        "reflectivity": reflectivity,
-        "energy_transmission": energy,
-        "absorption": absorption,
-        **errors,
-    }
-    if errors:
-        _warn_of(errors["error_estimate"], flat, name, np.atleast_1d(axis))
+    if estimate:
+        _warn_of(variables["error_estimate"], flat, name, np.atleast_1d(axis))
     coords = checks.coords(frequency=f, **{name: axis})
     coords |= _other_coords(slab, name, k, flat, dims, pick)
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
 
 
+#: What is told of plane waves, and of its errors.
+WAVES = ("r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+ERRORS = ("r_error_estimate", "t_error_estimate", "error_estimate")
+
+
+def _blocks(shape: tuple[int, int]) -> Iterator[tuple[slice, slice]]:
+    """Parts of (frequency, kx) that are answered at a time: equal ones, so that none is too small to be fast."""
+    many, long = shape
+    parts = -(-long // memory.WAVES_AT_A_TIME)
+    columns = -(-long // parts)
+    rows = max(1, memory.WAVES_AT_A_TIME // columns)
+    for i, j in itertools.product(range(0, many, rows), range(0, long, columns)):
+        yield slice(i, i + rows), slice(j, j + columns)
+
+
+def _answer(slab: Slab, frequency: np.ndarray, kx: np.ndarray, name: str, estimate: bool) -> tuple[np.ndarray, ...]:
+    """The variables of `WAVES` at some frequencies and kx, and those of `ERRORS` if asked for, (F, n) each."""
+    before, after = slab.before.at(frequency), slab.after.at(frequency)
+    omega = 2 * np.pi * frequency[:, None]
+    res, errors = _solved(slab, frequency, omega, kx, estimate)
+    with np.errstate(over="ignore"):
+        reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
+        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
+    energies = _energies(reflectivity, transmissivity, kx, omega, before, after)
+    return (res.r, res.t, transmissivity, reflectivity, *energies, *errors)
+
+
 def _solved(
     slab: Slab, frequency: np.ndarray, omega: np.ndarray, kx: np.ndarray, estimate: bool
-) -> tuple[response.Response | response.Checked, dict[str, np.ndarray]]:
+) -> tuple[response.Response | response.Checked, tuple[np.ndarray, ...]]:
     """r and t, and the variables that tell their errors."""
     values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
     if not estimate:
-        return response.solve(values, before, after, omega, kx), {}
+        return response.solve(values, before, after, omega, kx), ()
     rows = [materials(cell, frequency) for cell, _ in slab.segments]
     res = response.solve_checked(values, rows, before, after, omega, kx)
-    errors = {"r_error_estimate": res.r_error, "t_error_estimate": res.t_error}
-    return res, errors | {"error_estimate": np.maximum(res.r_error, res.t_error)}
+    return res, (res.r_error, res.t_error, np.maximum(res.r_error, res.t_error))
 
 
 #: Relative errors of plane waves from which on a warning is due.
@@ -185,12 +203,14 @@ def bloch(
     ValueError
         Also for a cell with a layer of isotropic density 0 and kx other than 0: no finite limit.
     """
-    checks.instance(cell, Cell, "cell")
-    checks.instance(background, Fluid, "background")
-    f = checks.axis(frequency, "frequency", positive=True)
+    validate.instance(cell, Cell, "cell")
+    validate.instance(background, Fluid, "background")
+    if cell.thickness < validate.LEAST:  # phases of thinner cells underflow, and kz is the phase over the thickness
+        raise ValueError(f"cell: expected a thickness of at least {validate.LEAST:g} m, got {cell.thickness:g}")
+    f = validate.axis(frequency, "frequency", positive=True)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
-    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat)
+    axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 350.0)
     if np.iscomplexobj(axis):
         raise ValueError(f"{name}: expected real values, got complex ones")
     layers = layer_values(cell, flat)
@@ -200,6 +220,8 @@ def bloch(
         )
     omega, k = 2 * np.pi * flat[:, None], k.astype(complex)
     kz = response.bloch_wavenumber(layers, omega, k)
+    if not np.all(np.isfinite(kz)):
+        raise ValueError(f"{name}: the Bloch wavenumber is not finite (double precision cannot hold the cell's matrix)")
     k0 = checks.forward_k0(background, flat, "background")
     dims, pick = checks.dims(frequency=f, **{name: axis})
     variables = {"kz": kz, "kz_over_k0": kz / k0[:, None]}
@@ -246,10 +268,10 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     ValueError
         Wrong arguments, a layer of density 0, or modes that were counted and not found.
     """
-    checks.instance(slab, Slab, "slab")
-    f = checks.axis(frequency, "frequency", positive=True)
-    highest = as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
-    strip = as_number(strip_over_k0, "strip_over_k0", positive=True)
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
+    highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
+    strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
     flat = np.atleast_1d(f)
     found = [_modes_at(slab, float(g), highest, strip) for g in flat]
     most = max(len(rows) for rows, _ in found)
@@ -286,8 +308,14 @@ def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tup
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
         )
+    most = memory.most_values()
     try:
-        found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0))
+        found, total = modes.find_modes(s, roots.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0), most)
+    except roots.TooManyValues:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip that {most:.2g} values of the dispersion function search through, got "
+            f"{highest:g} by {strip:g} k0; search a part of it, by kx_over_k0_max and strip_over_k0"
+        ) from None
     except roots.TooManyModes:
         raise ValueError(
             f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"

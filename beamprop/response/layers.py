@@ -59,12 +59,17 @@ def entire(u: np.ndarray) -> Entire:
     size = float(np.max(np.abs(u), initial=0.0))
     if size < 1.0:
         return _series(u, size)
+    if not math.isfinite(size):
+        raise ValueError(
+            f"slab: expected layers whose phase squared, rho_z d^2 (w^2/K - kx^2/rho_x), is a finite number, got {size}"
+        )
     w = np.sqrt(u)
-    safe = np.where(np.abs(w) < 1e-4, 1.0, w)
+    near = np.abs(w) < 1e-4
+    safe, small = np.where(near, 1.0, w), np.where(near, u, 0.0)
     steep = np.abs(w.imag)
     if float(steep.max()) < SCALE_FROM:
         half = np.sin(w / 2)
-        s = np.where(np.abs(w) < 1e-4, 1 - u / 6 + u * u / 120, 2 * half * np.cos(w / 2) / safe)
+        s = np.where(near, 1 - small / 6 + small * small / 120, 2 * half * np.cos(w / 2) / safe)
         return Entire(1.0, -2 * half * half, s, None)
     growth = np.where(steep < SCALE_FROM, 0.0, steep)
     calm = entire(np.where(growth > 0, 0.0, u))

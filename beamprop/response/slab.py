@@ -81,7 +81,7 @@ def solve(
     grazing = kz1 == 0
     if np.any(grazing):
         forward, backward, size = _grazing(near, grazing, forward, backward, size, front, behind, segments, omega)
-    with np.errstate(under="ignore", over="ignore"):
+    with np.errstate(all="ignore"):  # what is not finite is refused by those who ask
         per_incident = size / forward
         t = per_incident * np.exp(-near.log)
         r = backward / forward

@@ -1,0 +1,70 @@
+"""Random media and calls, a few hundred of each and always the same: answers, and ValueErrors that name an argument."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
+
+import fuzz
+import fuzz_cases
+
+import beamprop as bp
+
+#: What is said of wrong paths and files is held by the tests of storage.
+STORED = ("save", "load")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are not limited there")
+
+
+@pytest.mark.parametrize("kind", fuzz.QUICK)
+def test_nothing_else_comes_out(kind):
+    """No other error, no warning of NumPy, no NaN without a word, nothing slow or large, no end of the process."""
+    found = fuzz.run(kind, fuzz.QUICK[kind])
+    assert len(found) >= fuzz.QUICK[kind]
+    assert sum(one["outcome"] == "answer" for one in found) > len(found) / 3
+    assert [one for one in fuzz.bad_ones(found) if one["name"] not in STORED] == []
+
+
+def _named():
+    """What is public and can be called, as the table of calls names it."""
+    modules = {name: getattr(bp, name) for name in ("plot", "fem")}
+    public = {name for name in bp.__all__ if callable(getattr(bp, name)) and name != "AccuracyWarning"}
+    return (
+        public
+        | {f"plot.{n}" for n in ("field", "scattering", "bloch", "width", "comparison")}
+        | {f"fem.{n}" for n in vars(modules["fem"]) if n in ("field", "plan")}
+    )
+
+
+def test_every_public_function_is_called():
+    """The table of calls has all that is public."""
+    assert _named() <= set(fuzz_cases.CALLS)
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda: 1 / 0, "ZeroDivisionError"),
+        (lambda: bp.scattering(bp.Slab(bp.lmmd_cell()), 2500.0, kx=0.0) * float("nan"), "unannounced NaN or infinity"),
+        (lambda: (_ for _ in ()).throw(ValueError("what")), "ValueError without a name"),
+        (lambda: (_ for _ in ()).throw(ValueError("x: expected this, got that")), "ValueError"),
+        (lambda: __import__("numpy").float64(1e300) * 1e300, "leaked warning"),
+        (lambda: (_ for _ in ()).throw(MemoryError()), "MemoryError"),
+        (lambda: 1, "answer"),
+    ],
+    ids=lambda v: v if isinstance(v, str) else "",
+)
+def test_outcomes_are_told_apart(ask, said):
+    """What is bad is seen to be bad (or the tests above would hold by themselves)."""
+    assert fuzz.outcome("bloch", ask)[0] == said
+
+
+def test_an_end_of_a_process_is_counted(monkeypatch):
+    """A process that ends is the outcome of the case at which it ended; the others are asked all the same."""
+    monkeypatch.setattr(
+        fuzz, "_limited", lambda: __import__("resource").setrlimit(__import__("resource").RLIMIT_CPU, (0, 0))
+    )
+    found = fuzz.in_process("media", 3, 5)
+    assert [one["case"] for one in found] == ["media:3", "media:4"]
+    assert all(one["outcome"].startswith("end of the process") for one in found)
