@@ -13,9 +13,9 @@ import xarray as xr
 from .beam import Beam
 from .media import Slab, as_number
 from .questions import FieldMap, Progress
-from .storage import save_blocks
+from .storage import check_target, save_blocks
 
-#: The largest chunk of a Zarr store [bytes].
+#: The largest chunk of a file [bytes].
 CHUNK = 2**24
 #: Of a complex number [bytes].
 SIZE = 16
@@ -63,8 +63,11 @@ def save_field(
     Raises
     ------
     ValueError
-        Names the argument, what was expected and what came.
+        Names the argument, what was expected and what came. A path that cannot be written is found before the work.
+    OSError
+        The system refused a write. Of a netCDF file the space is reserved before the work: a full disk is found then.
     """
+    check_target(path)
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
     memory = as_number(memory, "memory", positive=True)
     block, chunk = _block(asked.shape, memory)
