@@ -17,7 +17,7 @@ from pathlib import Path
 import xarray as xr
 
 from ..conventions import label
-from .blocked import Blocks, BlockedVariable
+from .blocked import BlockedVariable, Blocks
 from .parts import joined, split
 from .settled import read_settled
 from .whole import check_target, write_whole

@@ -2,13 +2,18 @@
 
 HDF5 does not survive a failing write on closing a file (a full disk, a limit of file sizes): the process crashes. Here space is
 reserved before the first write, and a write that fails nevertheless is remembered; its bytes are kept in memory, where HDF5 finds them if
-it reads them again, and the failure is raised by `check` and `finish`, outside of HDF5.
+it reads them again, and the failure is raised by `check` and `finish`, outside of HDF5. For the same reason Ctrl-C waits until HDF5 has
+returned (`uninterrupted`): it would be a failing write.
 """
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
+import signal
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +26,7 @@ class GuardedFile:
     """A new file, readable and writable, as h5py's driver for file objects wants it."""
 
     def __init__(self, path: Path, reserve: int = 0) -> None:
-        self._file = open(path, "w+b", buffering=0)  # noqa: SIM115: closed by `finish` or `close`
+        self._file = open(path, "w+b", buffering=0)  # noqa: SIM115 (`close` closes it)
         self._size = self._position = self._kept = 0
         self._unwritten: list[tuple[int, bytes]] = []
         self._failure: OSError | None = None
@@ -69,8 +74,9 @@ class GuardedFile:
             except OSError as error:
                 self._failure = error
         if self._failure is not None and (self._kept < KEEP or len(view) < SMALL):
-            self._unwritten.append((self._position, bytes(view)))
-            self._kept += len(view)
+            with contextlib.suppress(MemoryError):
+                self._unwritten.append((self._position, bytes(view)))
+                self._kept += len(view)
         self._position += len(view)
         self._size = max(self._size, self._position)
         return len(view)
@@ -113,3 +119,20 @@ def _reserve(handle: int, size: int) -> None:
     except OSError as error:
         if error.errno in (errno.ENOSPC, errno.EFBIG, errno.EDQUOT):
             raise
+
+
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold Ctrl-C back; it takes effect at the end. Python interrupts its main thread alone."""
+    usual = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or not callable(usual):
+        yield
+        return
+    pressed: list[tuple[int, Any]] = []
+    signal.signal(signal.SIGINT, lambda number, frame: pressed.append((number, frame)))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
+        if pressed:
+            usual(*pressed[0])

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from .blocked import BlockedVariable
-from .guarded import GuardedFile
+from .guarded import GuardedFile, uninterrupted
 from .seal import Stretch, check_seal, seal
 
 #: Attribute with the variables that were written: their sizes and types, and the file's token.
@@ -50,7 +50,8 @@ def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.D
         into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
         into.attrs.update(variable.attrs)
         for where, values in variable.blocks:
-            into[where] = values
+            with uninterrupted():
+                into[where] = values
             guarded.check()
         _dump(rest(), file, 0)
 
@@ -61,12 +62,14 @@ def _new(draft: Path, size: int, variables: int) -> Iterator[tuple[h5netcdf.File
     reserve = size and int(size * (1 + FOR_VALUES)) + FOR_FILE + FOR_VARIABLE * variables
     guarded = GuardedFile(draft, reserve)
     try:
-        with h5py.File(guarded, "w", track_order=True) as h5:
-            with h5netcdf.File(h5, "w") as file:
-                yield file, guarded
-            _record(h5)
-            h5.flush()
-            stretches = [s for name, item in h5.items() for s in _stretches(name, item)]
+        with uninterrupted():
+            h5 = h5py.File(guarded, "w", track_order=True)
+            file = h5netcdf.File(h5, "w")
+        try:
+            yield file, guarded
+        finally:
+            with uninterrupted():
+                stretches = _close(file, h5)
         guarded.finish()
     except Exception:
         guarded.check()  # a failed write is the cause of whatever followed
@@ -76,9 +79,19 @@ def _new(draft: Path, size: int, variables: int) -> Iterator[tuple[h5netcdf.File
     seal(draft, stretches)
 
 
+def _close(file: h5netcdf.File, h5: h5py.File) -> list[Stretch]:
+    """Record the variables and close a file; where their values lie in it."""
+    with h5:
+        file.close()
+        _record(h5)
+        h5.flush()
+        return [s for name, item in h5.items() for s in _stretches(name, item)]
+
+
 def _dump(ds: xr.Dataset, file: h5netcdf.File, compression: int) -> None:
     encoding = {name: _encoding(v, compression) for name, v in ds.variables.items()}
-    ds.dump_to_store(xr.backends.H5NetCDFStore(file), encoding=encoding)
+    with uninterrupted():
+        ds.dump_to_store(xr.backends.H5NetCDFStore(file), encoding=encoding)
 
 
 def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
@@ -140,7 +153,9 @@ def read(path: Path) -> xr.Dataset:
     except MemoryError:
         raise
     except Exception as error:
-        raise ValueError(f"{path}: expected a netCDF file, got one that cannot be read, damaged or cut off ({error})") from None
+        raise ValueError(
+            f"{path}: expected a netCDF file, got one that cannot be read, damaged or cut off ({error})"
+        ) from None
     with opened:
         for name, v in opened.variables.items():
             load_variable(path, name, v)
@@ -169,7 +184,9 @@ def _refuse_foreign(path: Path, h5: h5py.File, group: h5py.Group, seen: set[Any]
         link = group.get(name, getlink=True)
         where = f"{group.name.rstrip('/')}/{name}"
         if not isinstance(link, h5py.HardLink):
-            raise Refusal(f"{path}: expected variables that lie in the file, got a link at {where!r} ({type(link).__name__})")
+            raise Refusal(
+                f"{path}: expected variables that lie in the file, got a link at {where!r} ({type(link).__name__})"
+            )
         item = group[name]
         address = h5py.h5o.get_info(item.id).addr
         if address in seen:
@@ -183,9 +200,13 @@ def _refuse_foreign(path: Path, h5: h5py.File, group: h5py.Group, seen: set[Any]
 
 def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
     if item.external:
-        raise Refusal(f"{path}: expected variables that lie in the file, got {where!r} with values in {item.external[0][0]!r}")
+        raise Refusal(
+            f"{path}: expected variables that lie in the file, got {where!r} with values in {item.external[0][0]!r}"
+        )
     if item.is_virtual:
-        raise Refusal(f"{path}: expected variables that lie in the file, got {where!r} made of others (a virtual dataset)")
+        raise Refusal(
+            f"{path}: expected variables that lie in the file, got {where!r} made of others (a virtual dataset)"
+        )
     plist = item.id.get_create_plist()
     for k in range(plist.get_nfilters()):
         number, _, _, name = plist.get_filter(k)
@@ -195,7 +216,9 @@ def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
             )
     asked = item.dtype.itemsize * math.prod(item.shape or ())
     if asked > HARMLESS and asked > EXPANSION * item.id.get_storage_size():
-        raise Refusal(f"{path}: expected values, got {where!r} of {asked:.3g} bytes, of which {item.id.get_storage_size()} are stored")
+        raise Refusal(
+            f"{path}: expected values, got {where!r} of {asked:.3g} bytes, of which {item.id.get_storage_size()} are stored"
+        )
 
 
 def _check_record(path: Path, h5: h5py.File) -> None:
@@ -213,6 +236,10 @@ def _check_record(path: Path, h5: h5py.File) -> None:
     found = _layout(h5)
     for name, layout in written.items():
         if name not in found:
-            raise Refusal(f"{path}: expected the variable {name!r}, which was written, got {', '.join(found) or 'none'}")
+            raise Refusal(
+                f"{path}: expected the variable {name!r}, which was written, got {', '.join(found) or 'none'}"
+            )
         if found[name] != layout:
-            raise Refusal(f"{path}: expected variable {name!r} of shape and type {layout}, as written, got {found[name]}")
+            raise Refusal(
+                f"{path}: expected variable {name!r} of shape and type {layout}, as written, got {found[name]}"
+            )

@@ -80,11 +80,15 @@ def check_seal(path: Path) -> None:
                 raise ValueError
             record = json.loads(text[:length])
         except (ValueError, OSError):
-            raise ValueError(f"{path}: expected a file as it was written, got one whose list of checksums is damaged") from None
+            raise ValueError(
+                f"{path}: expected a file as it was written, got one whose list of checksums is damaged"
+            ) from None
         if sum(n for n, _, _ in record["stretches"]) != size - FOOT - length:
             raise ValueError(f"{path}: expected a file as it was written, got one of another length")
         file.seek(0)
         wrong = {record["names"][name] for n, crc, name in record["stretches"] if _crc(file, n) != crc}
     if wrong:
-        what = " and ".join(f"the values of variable {n!r}" if n else "the names, attributes or layout" for n in sorted(wrong))
+        what = " and ".join(
+            f"the values of variable {n!r}" if n else "the names, attributes or layout" for n in sorted(wrong)
+        )
         raise ValueError(f"{path}: expected a file as it was written, got one with damage in {what} (wrong checksum)")

@@ -60,7 +60,9 @@ def check_target(path: str | Path) -> Path:
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise ValueError(f"path: expected a file in a folder that can be written to, got {str(path)!r}")
     if path.is_dir() and not path.is_symlink() and (other := not_of_a_store(path)) is not None:
-        raise ValueError(f"path: expected a file or a Zarr store to replace, got a folder with other things in it: {str(other)!r}")
+        raise ValueError(
+            f"path: expected a file or a Zarr store to replace, got a folder with other things in it: {str(other)!r}"
+        )
     return path
 
 

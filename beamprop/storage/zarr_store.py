@@ -161,7 +161,9 @@ def _refuse_strange_files(path: Path) -> None:
     for folder, folders, files in os.walk(path):
         for name in folders + files:
             if (link := Path(folder, name)).is_symlink():
-                raise ValueError(f"{path}: expected a Zarr store without links, got the link {str(link.relative_to(path))!r}")
+                raise ValueError(
+                    f"{path}: expected a Zarr store without links, got the link {str(link.relative_to(path))!r}"
+                )
             if name in _VERSION_2:
                 raise ValueError(
                     f"{path}: expected a Zarr store of format 3, got format 2 ({str(link.relative_to(path))!r}), whose filters may run "
@@ -201,7 +203,9 @@ def _refuse_foreign(path: Path, folder: Path, about: dict[str, Any]) -> None:
     where = f"{path}: {folder.relative_to(path).as_posix()!r}"
     kind = about.get("node_type")
     if about.get("zarr_format") != 3 or kind not in ("array", "group"):
-        raise ValueError(f"{where}: expected an array or a group of Zarr format 3, got {kind!r} of {about.get('zarr_format')!r}")
+        raise ValueError(
+            f"{where}: expected an array or a group of Zarr format 3, got {kind!r} of {about.get('zarr_format')!r}"
+        )
     if unknown := set(about) - (_ARRAY if kind == "array" else _GROUP):
         raise ValueError(f"{where}: expected metadata of an {kind}, got {', '.join(map(repr, sorted(unknown)))}")
     if not isinstance(about.get("attributes", {}), dict):
@@ -226,14 +230,18 @@ def _refuse_array(where: str, folder: Path, about: dict[str, Any]) -> None:
     for codec in about["codecs"]:
         name = codec if isinstance(codec, str) else codec["name"]
         if name not in CODECS:
-            raise ValueError(f"{where}: expected the codecs {', '.join(CODECS)}, got {name!r}, which save does not write")
+            raise ValueError(
+                f"{where}: expected the codecs {', '.join(CODECS)}, got {name!r}, which save does not write"
+            )
     if about.get("storage_transformers"):
         raise ValueError(f"{where}: expected no storage transformers, got {about['storage_transformers']!r:.60}")
     names = about["chunk_grid"]["name"], about["chunk_key_encoding"]["name"]
     if names != ("regular", "default"):
         raise ValueError(f"{where}: expected a regular grid of chunks with default names, got {names}")
     if about["chunk_key_encoding"].get("configuration", {}).get("separator", "/") != "/":
-        raise ValueError(f"{where}: expected the names of chunks to be parted by '/', got {about['chunk_key_encoding']!r:.60}")
+        raise ValueError(
+            f"{where}: expected the names of chunks to be parted by '/', got {about['chunk_key_encoding']!r:.60}"
+        )
     shape, sizes = about["shape"], about["chunk_grid"]["configuration"]["chunk_shape"]
     if len(shape) != len(sizes) or not all(type(n) is int and n >= 0 for n in (*shape, *sizes)):
         raise ValueError(f"{where}: expected lengths of an array and its chunks, got {shape!r:.60} and {sizes!r:.60}")
@@ -249,7 +257,9 @@ def _refuse_huge(where: str, folder: Path, about: dict[str, Any]) -> None:
     if asked > HARMLESS:
         stored = sum(Path(f, n).stat().st_size for f, _, names in os.walk(folder) for n in names)
         if asked > EXPANSION * stored:
-            raise ValueError(f"{where}: expected values, got an array of {asked:.3g} bytes, of which {stored} are stored")
+            raise ValueError(
+                f"{where}: expected values, got an array of {asked:.3g} bytes, of which {stored} are stored"
+            )
 
 
 def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
