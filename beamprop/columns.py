@@ -80,7 +80,9 @@ def _cells(text: str) -> list[str]:
 
 
 def _numbers(text: str, commas: str) -> list[float] | None:
-    cells = re.split(r"[,;\s]+", text.strip(",; \t")) if commas == "part" else [c.replace(",", ".") for c in _cells(text)]
+    cells = (
+        re.split(r"[,;\s]+", text.strip(",; \t")) if commas == "part" else [c.replace(",", ".") for c in _cells(text)]
+    )
     try:
         return [float(cell) for cell in cells]
     except ValueError:

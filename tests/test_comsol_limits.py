@@ -34,7 +34,9 @@ def refused_within(path, match, memory=2**26, seconds=20.0):
 def test_parameters_that_never_meet(tmp_path):
     """Nine columns, each at values of eight parameters that no other has: 9^8 combinations in less than a kilobyte."""
     columns = [", ".join(f"{name}={k}" for name in "abcdefgh") for k in range(9)]
-    text = HEAD + "% x, y, " + ", ".join(f"p (Pa) @ {c}" for c in columns) + "\n" + ",".join(["0", "0", *"1" * 9]) + "\n"
+    text = (
+        HEAD + "% x, y, " + ", ".join(f"p (Pa) @ {c}" for c in columns) + "\n" + ",".join(["0", "0", *"1" * 9]) + "\n"
+    )
     assert len(text) < 1000
     refused_within(write(tmp_path, text), r"export\.txt: expected values for at least one in 16 .*got 9 of 43046721")
 
@@ -42,7 +44,9 @@ def test_parameters_that_never_meet(tmp_path):
 def test_a_parameter_of_each_row(tmp_path):
     """Rows each at another point and another value of two parameters: points times values would be 1e12."""
     rows = "".join(f"{k} {k % 7} {k}.5 {k}.25 1\n" for k in range(10_000))
-    refused_within(write(tmp_path, HEAD + "% x y freq t p (Pa)\n" + rows), r"export\.txt: expected values for at least one in 16")
+    refused_within(
+        write(tmp_path, HEAD + "% x y freq t p (Pa)\n" + rows), r"export\.txt: expected values for at least one in 16"
+    )
 
 
 def test_two_parameters_in_columns_come_back(tmp_path):

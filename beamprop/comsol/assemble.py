@@ -132,7 +132,9 @@ def _groups(table: Table, rows: int) -> list[tuple[tuple[tuple[str, Any, str], .
 def _refuse_sparse(source: Source, cells: int, stored: int, what: str, names: str) -> None:
     """What is made of a file is bounded by what it holds: a few bytes must not ask for gigabytes of NaN."""
     if cells > ROOM and cells > SPARSE * stored:
-        source.refuse(None, f"values for at least one in {SPARSE} of the combinations of {what} ({names})", f"{stored} of {cells}")
+        source.refuse(
+            None, f"values for at least one in {SPARSE} of the combinations of {what} ({names})", f"{stored} of {cells}"
+        )
 
 
 def _at_points(source: Source, column: Column, index: np.ndarray, value: np.ndarray, size: int) -> np.ndarray:
@@ -214,7 +216,11 @@ def _variable(
     sizes = tuple(len(everything[n][0]) for n in lead)
     combinations = math.prod(sizes)
     _refuse_sparse(
-        source, combinations * values[0].size, len(values) * values[0].size, f"points and parameters of {name}", ", ".join(lead)
+        source,
+        combinations * values[0].size,
+        len(values) * values[0].size,
+        f"points and parameters of {name}",
+        ", ".join(lead),
     )
     out = np.full((*sizes, values[0].size), np.nan, np.result_type(*values))
     seen = np.zeros(sizes, bool)

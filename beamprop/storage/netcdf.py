@@ -30,6 +30,8 @@ CHUNK = 2**20
 FOR_FILE, FOR_VARIABLE, FOR_VALUES = 2**16, 2**13, 1 / 256
 #: HDF5's filters that are compiled into it or into h5py. Others are loaded from plug-ins, code of somebody's choice.
 FILTERS = {1: "deflate", 2: "shuffle", 3: "fletcher32", 4: "szip", 5: "nbit", 6: "scaleoffset", 32000: "lzf"}
+#: netCDF's mark of a dataset that stands for the length of a dimension, and is not read.
+LENGTH_ALONE = b"This is a netCDF dimension but not a netCDF variable"
 #: Values may be this much larger than what a file stores of them, or small.
 EXPANSION, HARMLESS = 2**16, 2**28
 
@@ -214,6 +216,8 @@ def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
             raise Refusal(
                 f"{path}: expected the filters {', '.join(FILTERS.values())}, got {where!r} with filter {number} {name.decode(errors='replace')!r}"
             )
+    if bytes(item.attrs.get("NAME", b"")).startswith(LENGTH_ALONE):
+        return
     asked = item.dtype.itemsize * math.prod(item.shape or ())
     if asked > HARMLESS and asked > EXPANSION * item.id.get_storage_size():
         raise Refusal(
