@@ -119,7 +119,7 @@ def test_codecs_in_inner_groups_and_consolidated_metadata(store):
             consolidated_metadata={"kind": "inline", "must_understand": False, "metadata": {name: what}},
         )
         with pytest.raises(
-            ValueError, match="expected the codecs|expected consolidated metadata of what is in the store"
+            ValueError, match=r"expected the codecs|expected consolidated metadata of what is in the store"
         ):
             bp.load(store)
 

@@ -44,7 +44,7 @@ def _filled(values: list[Stretch], size: int) -> list[Stretch]:
     """Stretches that cover a file of this size: neighbours of one variable joined, what lies between them under ""."""
     whole: list[Stretch] = []
     end = 0
-    for start, stop, name in [*values, (size, size, "")]:
+    for start, stop, name in [*(v for v in values if v[1] > v[0]), (size, size, "")]:
         if start > end:
             whole.append((end, start, ""))
         if whole and whole[-1][2] == name and stop > start:
