@@ -25,6 +25,15 @@ def ds():
     return field.assign(nothing=nothing, scalar=((), 2.5, {"units": "m"}), note=((), np.array("text", object)))
 
 
+def outcome(path, ds):
+    """What load says of a file: None if it gives the dataset."""
+    try:
+        loaded = bp.load(path)
+    except ValueError as error:
+        return str(error)
+    return None if loaded.identical(ds) else "another dataset, silently"
+
+
 def files_of(path):
     return [path] if path.is_file() else sorted(f for f in path.rglob("*") if f.is_file())
 
@@ -47,11 +56,9 @@ def test_every_flipped_bit_is_noticed_or_changes_nothing(tmp_path, ds, options):
         bad = bytearray(good)
         bad[bit // 8] ^= 1 << bit % 8
         file.write_bytes(bad)
-        try:
-            assert bp.load(path).identical(ds), (file.name, bit)
-        except ValueError as error:
-            refused += 1
-            assert str(path) in str(error)
+        refusal = outcome(path, ds)
+        assert refusal is None or str(path) in refusal, (file.name, bit)
+        refused += refusal is not None
         file.write_bytes(good)
     assert refused > 390
     assert bp.load(path).identical(ds)
@@ -66,10 +73,8 @@ def test_bytes_of_the_root_of_a_store(tmp_path, ds):
         bad = bytearray(good)
         bad[k] ^= 1 << k % 7
         (path / "zarr.json").write_bytes(bad)
-        try:
-            assert bp.load(path).identical(ds[["scalar"]]), k
-        except ValueError as error:
-            assert str(path) in str(error)
+        refusal = outcome(path, ds[["scalar"]])
+        assert refusal is None or str(path) in refusal, k
 
 
 @pytest.mark.parametrize("kind", ["nc", "zarr"])

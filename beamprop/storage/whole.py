@@ -33,6 +33,8 @@ except ImportError:  # Windows, where an open file cannot be removed: that serve
 LOCK, REPLACED = "lock", "replaced"
 #: A scratch folder without a lock file and without contents is abandoned after this time [s].
 FORGOTTEN = 600.0
+#: How often, and at which intervals [s], the scratch folder of a failed run is removed.
+PATIENCE, PAUSE = 5, 0.02
 _METADATA = {"zarr.json", ".zgroup", ".zarray", ".zattrs", ".zmetadata"}
 _CHUNK = re.compile(r"c|(c\.)?\d+(\.\d+)*")
 #: errno of a system or file system that cannot exchange two names.
@@ -145,21 +147,28 @@ def scratch_beside(path: Path) -> Iterator[Path]:
     for left in scratch_of(path):
         remove_abandoned(left, path)
     scratch = Path(tempfile.mkdtemp(prefix=_prefix(path), dir=path.parent))
+    failed = True
     try:
         with _locked(scratch):
             yield scratch
+        failed = False
     finally:
-        _remove(scratch, path)
+        _remove(scratch, path, failed)
 
 
-def _remove(scratch: Path, path: Path) -> None:
+def _remove(scratch: Path, path: Path, failed: bool = False) -> None:
     """Remove a scratch folder, after what was being replaced has been put back if nothing took its place."""
     if os.path.lexists(scratch / REPLACED) and not os.path.lexists(path):
         try:
             os.rename(scratch / REPLACED, path)
         except OSError:
             return  # the only copy of the old file is in there
-    shutil.rmtree(scratch, ignore_errors=True)
+    # zarr's threads may write on for a moment after one of them has failed, and make the folder anew
+    for _ in range(PATIENCE):
+        shutil.rmtree(scratch, ignore_errors=True)
+        if not failed:
+            return
+        time.sleep(PAUSE)
 
 
 @contextlib.contextmanager
