@@ -65,7 +65,7 @@ def test_a_limit_of_file_sizes(tmp_path, ending, how, reserve):
     path = tmp_path / f"a.{ending}"
     old = xr.Dataset({"q": ("x", [1.0, 2.0])})
     bp.save(old, path)
-    for limit in (300, 20_000) if ending == "zarr" else (300, 5_000, 500_000, 955_000):
+    for limit in (20_000,) if ending == "zarr" else (300, 955_000):
         kind, number, name, _ = write(path, limit, how, reserve)
         assert (kind, int(number), name) == ("OSError", errno.EFBIG, str(path))
         assert os.listdir(tmp_path) == [path.name]

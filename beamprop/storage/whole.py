@@ -35,6 +35,8 @@ LOCK, REPLACED = "lock", "replaced"
 FORGOTTEN = 600.0
 #: How often, and at which intervals [s], the scratch folder of a failed run is removed.
 PATIENCE, PAUSE = 5, 0.02
+#: How often a name is tried for that another writer takes at the same time.
+TRIES = 100
 _METADATA = {"zarr.json", ".zgroup", ".zarray", ".zattrs", ".zmetadata"}
 _CHUNK = re.compile(r"c|(c\.)?\d+(\.\d+)*")
 #: errno of a system or file system that cannot exchange two names.
@@ -53,7 +55,7 @@ def check_target(path: str | Path) -> Path:
     try:
         folder = path.parent.is_dir()
         os.lstat(path)
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         pass
     except OSError as error:
         raise ValueError(f"path: expected a name that the file system takes, got {path!s} ({error.strerror})") from None
@@ -217,11 +219,22 @@ def remove_abandoned(scratch: Path, path: Path) -> None:
 
 def put_in_place(draft: Path, path: Path, replaced: Path) -> None:
     """Give a draft its name in one step; what stood there is in the scratch folder afterwards."""
-    if not os.path.lexists(path) or not (draft.is_dir() or (path.is_dir() and not path.is_symlink())):
-        os.replace(draft, path)
-        return
-    if exchange(draft, path):
-        return
+    for k in range(TRIES):
+        try:
+            if not os.path.lexists(path) or not (draft.is_dir() or (path.is_dir() and not path.is_symlink())):
+                os.replace(draft, path)
+            elif not exchange(draft, path):
+                _rename_twice(draft, path, replaced)
+            return
+        except OSError as error:
+            # another writer put its own there, or took it away, in between
+            if error.errno not in (errno.ENOENT, errno.ENOTEMPTY, errno.EEXIST) or not draft.exists() or k == TRIES - 1:
+                raise
+            if os.path.lexists(replaced):
+                os.rename(replaced, replaced.with_name(f"{replaced.name}-{k}"))
+
+
+def _rename_twice(draft: Path, path: Path, replaced: Path) -> None:
     try:
         os.rename(path, replaced)
         os.rename(draft, path)
