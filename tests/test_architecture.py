@@ -259,7 +259,7 @@ PRIVATE = re.compile(r"(?<![\w$.})/])/(home|Users|root|tmp|work|mnt)/[\w.]|(?<![
 
 def shipped():
     kinds = ("*.py", "*.md", "*.toml", "*.cfg", "*.yml", "*.sh")
-    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments")]
+    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments", "docs")]
     inner = [path for top in tops for kind in kinds for path in sorted(top.rglob(kind))]
     return inner + [
         path
@@ -278,6 +278,35 @@ def test_no_file_names_a_private_path():
         if (match := PRIVATE.search(path.read_text(encoding="utf-8")))
     ]
     assert found == []
+
+
+def test_the_tests_that_the_documentation_names_exist():
+    """Each statement of docs/what-happens-when.md names a test that holds it."""
+    known = {path.name: path.read_text(encoding="utf-8") for path in (CHECKOUT / "tests").glob("test_*.py")}
+    text = (CHECKOUT / "docs" / "what-happens-when.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(?:(test_\w+\.py)(?:::)?)?(test_\w+)?`", text)
+    assert len(named) > 25
+    for file, test in named:
+        assert not file or file in known, file
+        assert not test or f"def {test}(" in (known[file] if file else "".join(known.values())), test
+
+
+#: Files of the storage package, in the order in which they may import one another.
+STORAGE = ["blocked", "parts", "whole", "settled", "guarded", "seal", "netcdf", "zarr_store", "__init__"]
+
+
+@pytest.mark.parametrize("name", STORAGE)
+def test_storage_is_in_layers(name):
+    """Paths know nothing of formats, formats nothing of save and load."""
+    path = ROOT / "storage" / f"{name}.py"
+    inner = {
+        alias
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom) and node.level == 1
+        for alias in ([node.module] if node.module else [a.name for a in node.names])
+    }
+    assert inner <= set(STORAGE[: STORAGE.index(name)])
+    assert {p.stem for p in (ROOT / "storage").glob("*.py")} == set(STORAGE)
 
 
 @pytest.mark.parametrize("folder", ["home", "Users", "root", "tmp", "work"])
