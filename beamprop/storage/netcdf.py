@@ -37,7 +37,8 @@ EXPANSION, HARMLESS = 2**16, 2**28
 
 
 def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
-    """Write a dataset."""
+    """Write a dataset; values that dask would still have to compute are computed first."""
+    ds = ds.compute()
     size = 0 if compression else sum(v.nbytes for v in ds.variables.values())
     with _new(draft, size, len(ds.variables)) as (file, _):
         _dump(ds, file, compression)

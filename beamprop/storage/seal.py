@@ -79,14 +79,15 @@ def check_seal(path: Path) -> None:
             if zlib.crc32(text) != int(foot[16:24], 16):
                 raise ValueError
             record = json.loads(text[:length])
-        except (ValueError, OSError):
+            stretches = [(int(n), int(crc), str(record["names"][name])) for n, crc, name in record["stretches"]]
+        except (ValueError, OSError, LookupError, TypeError, RecursionError):
             raise ValueError(
                 f"{path}: expected a file as it was written, got one whose list of checksums is damaged"
             ) from None
-        if sum(n for n, _, _ in record["stretches"]) != size - FOOT - length:
+        if sum(n for n, _, _ in stretches) != size - FOOT - length:
             raise ValueError(f"{path}: expected a file as it was written, got one of another length")
         file.seek(0)
-        wrong = {record["names"][name] for n, crc, name in record["stretches"] if _crc(file, n) != crc}
+        wrong = {name for n, crc, name in stretches if _crc(file, n) != crc}
     if wrong:
         what = " and ".join(
             f"the values of variable {n!r}" if n else "the names, attributes or layout" for n in sorted(wrong)

@@ -141,7 +141,12 @@ def read(path: Path) -> xr.Dataset:
     nodes = dict(_nodes(path))
     for folder, about in nodes.items():
         _refuse_foreign(path, folder, about)
-    _check_record(path, nodes)
+    try:
+        _check_record(path, nodes)
+    except (LookupError, TypeError, AttributeError):
+        raise ValueError(
+            f"{path}: expected a store as it was written, got one whose list of checksums is none"
+        ) from None
     try:
         opened = xr.open_zarr(path, consolidated=False)
     except MemoryError:
@@ -282,7 +287,7 @@ def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
         folder, about = found[name]
         if _digest(about) != metadata:
             raise ValueError(f"{wrong} variable {name!r}: its dimensions, type or attributes (in {name}/zarr.json)")
-        wanted = (crcs[k : k + 8] for k in range(0, len(crcs), 8))
+        wanted = [crcs[k : k + 8] for k in range(0, len(crcs), 8)]
         for key, crc, is_now in zip(_chunk_keys(about), wanted, _chunk_crcs(folder, about), strict=True):
             if is_now != crc:
                 what = "is missing" if is_now == ABSENT else "is not as it was written (wrong checksum)"
