@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
+from beamprop.storage import netcdf
 from beamprop.storage.guarded import GuardedFile
 
 resource = pytest.importorskip("resource")
@@ -169,3 +170,16 @@ def test_the_command_says_it(tmp_path):
         assert options[1] in done.stderr
         assert "Traceback" not in done.stderr
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("shape", [(), (5,), (300_000,), (17, 61_000), (3, 0, 4), (2, 3, 5, 70_000), (1500, 1500)])
+def test_what_is_reserved_is_what_is_written(tmp_path, shape):
+    """Nearly: enough for the values and the tables, and not much more than the values."""
+    ds = xr.Dataset({"v": ([f"d{k}" for k in range(len(shape))], np.ones(shape))})
+    chunks = netcdf._chunks(ds.v.variable)
+    assert 8 * np.prod(chunks, dtype=int) <= netcdf.CHUNK
+    stored = netcdf._stored(shape, chunks, 8)
+    assert ds.v.nbytes <= stored <= 1.2 * ds.v.nbytes
+    bp.save(ds, tmp_path / "a.nc")
+    taken = (tmp_path / "a.nc").stat().st_size
+    assert stored <= taken <= stored * (1 + netcdf.FOR_VALUES) + netcdf.FOR_FILE + netcdf.FOR_VARIABLE

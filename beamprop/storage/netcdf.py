@@ -39,7 +39,7 @@ EXPANSION, HARMLESS = 2**16, 2**28
 def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
     """Write a dataset; values that dask would still have to compute are computed first."""
     ds = ds.compute()
-    size = 0 if compression else sum(v.nbytes for v in ds.variables.values())
+    size = 0 if compression else sum(_stored(v.shape, _chunks(v), v.dtype.itemsize) for v in ds.variables.values())
     with _new(draft, size, len(ds.variables)) as (file, _):
         _dump(ds, file, compression)
 
@@ -47,7 +47,7 @@ def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
 def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
     """Write one variable block by block, and then the others."""
     shape = tuple(variable.sizes.values())
-    with _new(draft, 16 * math.prod(shape), 8) as (file, guarded):
+    with _new(draft, _stored(shape, variable.chunks, 16), 8) as (file, guarded):
         file.dimensions = variable.sizes
         options: dict[str, Any] = {"chunks": variable.chunks, "fletcher32": True} if shape else {}
         into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
@@ -101,12 +101,23 @@ def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
     """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
     if not v.size or not v.ndim or v.dtype.kind in "OSU":
         return {}
-    chunks = list(v.shape)
-    for axis in range(v.ndim):
-        rest = v.dtype.itemsize * math.prod(chunks[axis + 1 :])
-        chunks[axis] = max(1, min(chunks[axis], CHUNK // rest))
     packed = {"zlib": True, "complevel": compression} if compression else {}
-    return {"fletcher32": True, "chunksizes": tuple(chunks), **packed}
+    return {"fletcher32": True, "chunksizes": _chunks(v), **packed}
+
+
+def _chunks(v: xr.Variable) -> tuple[int, ...]:
+    """Chunks of at most `CHUNK` bytes, as even as can be: HDF5 stores those at the ends whole."""
+    chunks = list(v.shape)
+    for axis, length in enumerate(v.shape):
+        rest = v.dtype.itemsize * math.prod(chunks[axis + 1 :])
+        count = -(-length // max(1, CHUNK // max(1, rest)))
+        chunks[axis] = -(-length // max(1, count))
+    return tuple(chunks)
+
+
+def _stored(shape: tuple[int, ...], chunks: tuple[int, ...], size: int) -> int:
+    """Bytes that an array's chunks take."""
+    return size * math.prod(-(-n // max(1, c)) * c for n, c in zip(shape, chunks, strict=True))
 
 
 def _record(h5: h5py.File) -> None:
