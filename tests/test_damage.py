@@ -22,7 +22,7 @@ def ds():
         bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.1), [2400.0, 2500.0], np.linspace(-0.4, 0.4, 11), [0.0, 0.1]
     )
     nothing = (field.p.real * np.nan).assign_attrs(field.p.attrs)
-    return field.assign(nothing=nothing, scalar=((), 2.5, {"units": "m"}), note=((), np.array("text", object)))
+    return field.assign(nothing=nothing, scalar=((), 2.5, {"units": "m"}))
 
 
 def outcome(path, ds):

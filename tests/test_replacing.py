@@ -204,7 +204,9 @@ def test_what_cannot_be_put_back_is_kept(tmp_path, monkeypatch):
 
 
 KILLED = """
-import sys, time, numpy as np, beamprop as bp
+import signal, sys, time, numpy as np, beamprop as bp
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs in the background are started without
 
 def slow(work):
     for k, item in enumerate(work):
@@ -296,8 +298,12 @@ def test_ctrl_c_waits_for_hdf5(tmp_path, monkeypatch):
         after.append(True)
 
     monkeypatch.setattr(xr.Dataset, "dump_to_store", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        bp.save(version(2), path)
+    usual = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            bp.save(version(2), path)
+    finally:
+        signal.signal(signal.SIGINT, usual)
     assert after == [True]
     assert versions_in(bp.load(path)) == {1}
     assert names(tmp_path) == ["a.nc"]
