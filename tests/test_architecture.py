@@ -3,6 +3,8 @@
 import ast
 import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -289,6 +291,15 @@ def test_the_tests_that_the_documentation_names_exist():
     for file, test in named:
         assert not file or file in known, file
         assert not test or f"def {test}(" in (known[file] if file else "".join(known.values())), test
+
+
+def test_each_dependency_states_one_minimum():
+    """What the gate installs as minima is read from pyproject.toml: every dependency, pinned."""
+    script = CHECKOUT / ".ci" / "minima.py"
+    pins = subprocess.run([sys.executable, str(script), "test"], capture_output=True, text=True, check=True).stdout
+    names = {re.split("==", line)[0] for line in pins.splitlines() if re.fullmatch(r"[\w-]+==[\d.]+(; .*)?", line)}
+    assert len(names) == len(pins.splitlines())
+    assert {"numpy", "xarray", "h5netcdf", "h5py", "zarr", "netCDF4"} <= names
 
 
 #: Files of the storage package, in the order in which they may import one another.
