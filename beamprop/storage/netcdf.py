@@ -18,6 +18,7 @@ import xarray as xr
 from .blocked import BlockedVariable
 from .guarded import GuardedFile, uninterrupted
 from .seal import Stretch, check_seal, seal
+from .settled import EXPANSION, HARMLESS, load_variable
 
 #: Attribute with the variables that were written: their sizes and types, and the file's token.
 RECORD = "beamprop_variables"
@@ -32,8 +33,6 @@ FOR_FILE, FOR_VARIABLE, FOR_VALUES = 2**16, 2**13, 1 / 256
 FILTERS = {1: "deflate", 2: "shuffle", 3: "fletcher32", 4: "szip", 5: "nbit", 6: "scaleoffset", 32000: "lzf"}
 #: netCDF's mark of a dataset that stands for the length of a dimension, and is not read.
 LENGTH_ALONE = b"This is a netCDF dimension but not a netCDF variable"
-#: Values may be this much larger than what a file stores of them, or small.
-EXPANSION, HARMLESS = 2**16, 2**28
 
 
 def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
@@ -176,16 +175,6 @@ def read(path: Path) -> xr.Dataset:
         ds = opened.load()
     ds.attrs.pop(RECORD, None)
     return ds
-
-
-def load_variable(path: Path, name: Any, v: xr.Variable) -> None:
-    """Read the values of a variable; what goes wrong names it."""
-    try:
-        v.load()
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise ValueError(f"{path}: expected the values of variable {name!r}, got damaged ones ({error})") from None
 
 
 class Refusal(ValueError):

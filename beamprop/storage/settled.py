@@ -1,4 +1,4 @@
-"""Reading beside a writer: what is read is one version of a file, although another may take its place meanwhile."""
+"""Reading, whatever the format: one version of a file, although another may take its place meanwhile, and variables one by one."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -13,6 +14,8 @@ from .whole import scratch_of
 
 #: Times to begin again, and to wait for a name that a writer is just giving away [s].
 TRIES, PAUSE, PATIENCE = 200, 0.01, 2.0
+#: Values may be this much larger than what a file stores of them, or small.
+EXPANSION, HARMLESS = 2**16, 2**28
 
 
 def read_settled(path: Path, read: Callable[[Path], xr.Dataset]) -> xr.Dataset:
@@ -67,3 +70,13 @@ def _identity(path: Path | int) -> tuple[int, int] | None:
     except FileNotFoundError:
         return None
     return status.st_dev, status.st_ino
+
+
+def load_variable(path: Path, name: Any, v: xr.Variable) -> None:
+    """Read the values of a variable; what goes wrong names it."""
+    try:
+        v.load()
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"{path}: expected the values of variable {name!r}, got damaged ones ({error})") from None

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from .blocked import BlockedVariable
-from .netcdf import EXPANSION, HARMLESS, load_variable
+from .settled import EXPANSION, HARMLESS, load_variable
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
 #: In place of a CRC-32: the chunk is one of fill values, which Zarr does not write.
