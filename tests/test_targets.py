@@ -171,3 +171,11 @@ def test_writing_leaves_the_mask_of_permissions_alone(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "umask", lambda mask: pytest.fail("the mask was set"))
     for name in NAMES:
         bp.save(version(1), tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["a\0.nc", "a\0.zarr", "a" * 300 + ".nc"])
+def test_names_that_no_file_system_takes(tmp_path, name):
+    """Said of the path, by save and load alike."""
+    for ask in (lambda: bp.save(version(1), tmp_path / name), lambda: bp.load(tmp_path / name)):
+        with pytest.raises(ValueError, match=r"^path: expected a name that the file system takes"):
+            ask()

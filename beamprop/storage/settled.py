@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import time
 from collections.abc import Callable
@@ -52,16 +53,18 @@ def _open(path: Path) -> int | None:
     while True:
         try:
             return os.open(path, os.O_RDONLY)
-        except PermissionError:
-            if os.name == "nt" and path.is_dir():
-                return None
-            raise
         except (FileNotFoundError, NotADirectoryError):
             # between the two renames of a system that cannot exchange names there is neither old nor new
             if waited >= PATIENCE or not path.parent.is_dir() or not scratch_of(path):
                 raise ValueError(f"path: expected an existing file, got {str(path)!r}") from None
             time.sleep(PAUSE)
             waited += PAUSE
+        except (ValueError, OSError) as error:
+            if isinstance(error, PermissionError) and os.name == "nt" and path.is_dir():
+                return None
+            if isinstance(error, OSError) and error.errno != errno.ENAMETOOLONG:
+                raise
+            raise ValueError(f"path: expected a name that the file system takes, got {str(path)!r}") from None
 
 
 def _identity(path: Path | int) -> tuple[int, int] | None:

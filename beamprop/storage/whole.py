@@ -52,6 +52,8 @@ def check_target(path: str | Path) -> Path:
         The folder is missing or cannot be written, the name is too long, or a folder of other things is in the way.
     """
     path = Path(path)
+    if "\0" in str(path):
+        raise ValueError(f"path: expected a name that the file system takes, got {str(path)!r}")
     try:
         folder = path.parent.is_dir()
         os.lstat(path)
