@@ -14,6 +14,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 import numpy as np
 
 from . import memory, validate
+from .columns import read_columns
 from .validate import as_count, as_number
 
 _B = TypeVar("_B", bound="_Tilted")
@@ -267,7 +268,8 @@ class Profile(_Tilted):
     ) -> Profile:
         """A measured profile from a text file of two or three columns: x [m], Re p, Im p [Pa].
 
-        Columns are parted by blanks, commas or semicolons; lines that begin with # or % are comments.
+        Columns are parted by blanks, commas or semicolons; lines that begin with # or % are comments. Commas are decimal
+        where semicolons or tabs part the columns and no number has a point; what could be read either way is refused.
 
         Parameters
         ----------
@@ -280,30 +282,13 @@ class Profile(_Tilted):
         Raises
         ------
         ValueError
-            Names the file, and the line that is no row of numbers.
+            Names the file, and the line that is no row of finite numbers or may be read in two ways.
         OSError
             The file cannot be opened.
         """
         path = validate.as_path(path)
         validate.flag(conjugate, "conjugate")
-        rows: list[list[float]] = []
-        with open(path, encoding="utf-8-sig") as lines:
-            for number, line in enumerate(lines, 1):
-                cells = line.replace(",", " ").replace(";", " ").split()
-                if not cells or cells[0][0] in "#%":
-                    continue
-                try:
-                    row = [float(cell) for cell in cells]
-                except ValueError:
-                    row = []
-                if len(row) not in (2, 3) or (rows and len(row) != len(rows[0])):
-                    raise ValueError(
-                        f"{path}, line {number}: expected 2 or 3 numbers (x, Re p, Im p), got {line.strip()!r}"
-                    )
-                rows.append(row)
-        if len(rows) < 2:
-            raise ValueError(f"{path}: expected at least 2 rows of x, Re p, Im p, got {len(rows)}")
-        table = np.array(rows)
+        table = read_columns(path, 2, 3, "x, Re p, Im p")
         p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
         order = np.argsort(table[:, 0], kind="stable")
         return cls(table[order, 0], (p.conj() if conjugate else p)[order], z0, angle)

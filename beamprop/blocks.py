@@ -15,9 +15,9 @@ from .beam import Beam
 from .media import Slab
 from .memory import check_field
 from .questions import FieldMap, Progress
-from .storage import save_blocks
+from .storage import check_target, save_blocks
 
-#: The largest chunk of a Zarr store [bytes].
+#: The largest chunk of a file [bytes].
 CHUNK = 2**24
 #: Of a complex number [bytes].
 SIZE = 16
@@ -65,10 +65,13 @@ def save_field(
     Raises
     ------
     ValueError
-        Names the argument, what was expected and what came.
+        Names the argument, what was expected and what came. A path that cannot be written is found before the work.
+    OSError
+        The system refused a write. Of a netCDF file the space is reserved before the work: a full disk is found then.
     """
     path = validate.as_path(path)
     validate.function(progress, "progress")
+    check_target(path)
     asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
     check_field(asked.shape, in_file=True)
     memory = validate.as_number(memory, "memory", positive=True)

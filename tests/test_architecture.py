@@ -3,6 +3,8 @@
 import ast
 import importlib
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -22,6 +24,7 @@ ORDER = [
     "homogenize",
     "products",
     "response",
+    "columns",
     "beam",
     "widths",
     "fft",
@@ -63,7 +66,8 @@ ONLY = {
     "media": {"conventions", "memory", "validate"},
     "homogenize": {"conventions", "validate", "media"},
     "response": {"conventions", "media", "products"},
-    "beam": {"conventions", "memory", "validate", "media"},
+    "columns": set(),
+    "beam": {"columns", "conventions", "memory", "validate", "media"},
     "fem": {"conventions", "memory", "validate", "media", "beam", "datasets"},
     "comsol": {"conventions", "memory", "validate", "datasets"},
     "storage": {"conventions", "validate", "datasets"},
@@ -277,7 +281,7 @@ PRIVATE = re.compile(r"(?<![\w$.})/])/(home|Users|root|tmp|work|mnt)/[\w.]|(?<![
 
 def shipped():
     kinds = ("*.py", "*.md", "*.toml", "*.cfg", "*.yml", "*.sh")
-    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments")]
+    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments", "docs")]
     inner = [path for top in tops for kind in kinds for path in sorted(top.rglob(kind))]
     return inner + [
         path
@@ -296,6 +300,44 @@ def test_no_file_names_a_private_path():
         if (match := PRIVATE.search(path.read_text(encoding="utf-8")))
     ]
     assert found == []
+
+
+def test_the_tests_that_the_documentation_names_exist():
+    """Each statement of docs/what-happens-when.md names a test that holds it."""
+    known = {path.name: path.read_text(encoding="utf-8") for path in (CHECKOUT / "tests").glob("test_*.py")}
+    text = (CHECKOUT / "docs" / "what-happens-when.md").read_text(encoding="utf-8")
+    named = re.findall(r"`(?:(test_\w+\.py)(?:::)?)?(test_\w+)?`", text)
+    assert len(named) > 25
+    for file, test in named:
+        assert not file or file in known, file
+        assert not test or f"def {test}(" in (known[file] if file else "".join(known.values())), test
+
+
+def test_each_dependency_states_one_minimum():
+    """What the gate installs as minima is read from pyproject.toml: every dependency, pinned."""
+    script = CHECKOUT / ".ci" / "minima.py"
+    pins = subprocess.run([sys.executable, str(script), "test"], capture_output=True, text=True, check=True).stdout
+    names = {re.split("==", line)[0] for line in pins.splitlines() if re.fullmatch(r"[\w-]+==[\d.]+(; .*)?", line)}
+    assert len(names) == len(pins.splitlines())
+    assert {"numpy", "xarray", "h5netcdf", "h5py", "zarr", "netCDF4"} <= names
+
+
+#: Files of the storage package, in the order in which they may import one another.
+STORAGE = ["blocked", "parts", "whole", "settled", "guarded", "seal", "netcdf", "zarr_store", "__init__"]
+
+
+@pytest.mark.parametrize("name", STORAGE)
+def test_storage_is_in_layers(name):
+    """Paths know nothing of formats, formats nothing of save and load."""
+    path = ROOT / "storage" / f"{name}.py"
+    inner = {
+        alias
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ImportFrom) and node.level == 1
+        for alias in ([node.module] if node.module else [a.name for a in node.names])
+    }
+    assert inner <= set(STORAGE[: STORAGE.index(name)])
+    assert {p.stem for p in (ROOT / "storage").glob("*.py")} == set(STORAGE)
 
 
 @pytest.mark.parametrize("folder", ["home", "Users", "root", "tmp", "work"])

@@ -233,7 +233,8 @@ def test_an_order_on_kz_0_is_warned_about():
 
 
 def test_an_order_beside_a_guided_mode_is_warned_about():
-    with pytest.warns(UserWarning, match=r"order -10 at kx = -1\.59.* k0 lies beside a guided mode"):
+    # orders +10 and -10 are alike; rounding, and with it the version of the solver, says which is the larger
+    with pytest.warns(UserWarning, match=r"order [-+]10 at kx = -?1\.59.* k0 lies beside a guided mode"):
         fem.field(Slab(lmmd_cell(0.05, 0), 20), BEAM, FREQUENCY, *ONE, 6.258 * WAVELENGTH)
 
 

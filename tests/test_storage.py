@@ -208,7 +208,7 @@ class Stop(Exception):
 @pytest.fixture(params=["a.nc", "a.zarr"])
 def failing(request, monkeypatch):
     """A file name, and a writer of its kind that fails after it has written something."""
-    method = "to_netcdf" if request.param.endswith("nc") else "to_zarr"
+    method = "dump_to_store" if request.param.endswith("nc") else "to_zarr"
     original = getattr(xr.Dataset, method)
 
     def half(self, target, **options):
@@ -244,13 +244,13 @@ def test_a_writer_that_fails_leaves_the_old_file(tmp_path, small, datasets, fail
 def test_the_name_appears_when_the_file_is_complete(tmp_path, small, monkeypatch):
     """While it is being written the file has another name."""
     seen = []
-    original = xr.Dataset.to_netcdf
+    original = xr.Dataset.dump_to_store
 
     def watched(self, target, **options):
         original(self, target, **options)
         seen.append((tmp_path / "a.nc").exists())
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", watched)
+    monkeypatch.setattr(xr.Dataset, "dump_to_store", watched)
     bp.save(small, tmp_path / "a.nc")
     assert seen == [False]
     assert (tmp_path / "a.nc").exists()

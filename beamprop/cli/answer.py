@@ -40,6 +40,8 @@ def answer(
             save(ds, o["output"])
         if o["plot"] and draw is not None:
             draw_into(ds, draw, o["plot"])
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
     except (OSError, ImportError) as error:
         raise click.ClickException(str(error)) from None
     if o["as_json"]:

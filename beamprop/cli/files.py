@@ -89,7 +89,13 @@ def convert(
         return read_comsol(source, x, z, expression)
 
     o = {"output": None, "plot": None, "as_json": False, "quiet": True}
-    save(answer(o, ask, None, str), target, split_complex=split_complex)
+    ds = answer(o, ask, None, str)
+    try:
+        save(ds, target, split_complex=split_complex)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from None
+    except (OSError, ImportError) as error:
+        raise click.ClickException(str(error)) from None
     if not quiet:
         click.echo(f"wrote {target}")
 

@@ -58,7 +58,7 @@ def spaced(start: float, stop: float, count: int) -> list[float]:
 
 
 class Target(click.ParamType):
-    """A file to write, with one of some endings, in a folder that exists."""
+    """A file to write, with one of some endings, in a folder that exists and can be written to."""
 
     name = "file"
 
@@ -69,9 +69,12 @@ class Target(click.ParamType):
         path = Path(value)
         if path.suffix.lower() not in self.endings:
             self.fail(f"expected a name ending in {' or '.join(self.endings)}, got {str(value)!r}", param, ctx)
-        if not path.parent.is_dir():
-            self.fail(f"expected a file in an existing folder, got {str(value)!r}", param, ctx)
-        return path
+        from ..storage import check_target
+
+        try:
+            return check_target(path)
+        except ValueError as error:
+            self.fail(str(error).removeprefix("path: "), param, ctx)
 
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]

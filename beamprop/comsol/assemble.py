@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import re
 import warnings
+from collections import Counter
 from collections.abc import Iterable
 from typing import Any
 
@@ -17,6 +19,8 @@ from .text import PRESSURE_UNITS, QUANTITIES, Source, plain_unit
 
 _RESERVED = ("x", "z", "p", "node", "elements", "element", "corner")
 _PRESSURE = re.compile(r"(?:\w+\.)*(p_t|p)")
+#: Combinations that a dataset may hold: so many values, or this many times those in the file.
+ROOM, SPARSE = 2**16, 16
 NEAR = 1e-9  # coordinates closer than this share of their span are one, for exports carry rounding errors
 
 
@@ -97,23 +101,40 @@ def _place(table: Table, chosen: dict[str, str]) -> tuple[dict[str, np.ndarray],
 
 def _spread(table: Table, index: np.ndarray, size: int) -> tuple[list[Column], list[np.ndarray]]:
     """Columns over the distinct points; parameters that are columns of their own become parameters of columns."""
-    groups: list[tuple[tuple[tuple[str, Any, str], ...], np.ndarray]] = [((), np.arange(index.size))]
-    for name, (value, unit) in table.scattered.items():
-        if np.iscomplexobj(value) or not np.all(np.isfinite(value)):
-            table.source.refuse(None, f"finite real values in the column {name}", "NaN, infinite or complex ones")
-        levels, level = _snap(value)
-        groups = [
-            ((*key, (name, float(v), unit)), rows[level[rows] == k])
-            for key, rows in groups
-            for k, v in enumerate(levels)
-            if np.any(level[rows] == k)
-        ]
+    groups = _groups(table, index.size)
+    _refuse_sparse(table.source, len(groups) * size, index.size, "points", ", ".join(table.scattered))
     columns, values = [], []
     for key, rows in groups:
         for column, value in zip(table.columns, table.values, strict=True):
             columns.append(Column(column.expression, column.unit, (*key, *column.parameters)))
             values.append(_at_points(table.source, column, index[rows], value[rows], size))
     return columns, values
+
+
+def _groups(table: Table, rows: int) -> list[tuple[tuple[tuple[str, Any, str], ...], np.ndarray]]:
+    """Values of the parameters that are columns, and the rows that have them; one group of all rows without such."""
+    names, levels, level = list(table.scattered), [], []
+    for name, (value, _) in table.scattered.items():
+        if np.iscomplexobj(value) or not np.all(np.isfinite(value)):
+            table.source.refuse(None, f"finite real values in the column {name}", "NaN, infinite or complex ones")
+        distinct, number = _snap(value)
+        levels.append(distinct)
+        level.append(number)
+    if not names:
+        return [((), np.arange(rows))]
+    found, group = np.unique(np.stack(level, axis=-1), axis=0, return_inverse=True)
+    members = np.split(np.argsort(group.ravel(), kind="stable"), np.cumsum(np.bincount(group.ravel()))[:-1])
+    units = [table.scattered[n][1] for n in names]
+    keys = [tuple((n, float(v[k]), u) for n, v, k, u in zip(names, levels, key, units, strict=True)) for key in found]
+    return list(zip(keys, members, strict=True))
+
+
+def _refuse_sparse(source: Source, cells: int, stored: int, what: str, names: str) -> None:
+    """What is made of a file is bounded by what it holds: a few bytes must not ask for gigabytes of NaN."""
+    if cells > ROOM and cells > SPARSE * stored:
+        source.refuse(
+            None, f"values for at least one in {SPARSE} of the combinations of {what} ({names})", f"{stored} of {cells}"
+        )
 
 
 def _at_points(source: Source, column: Column, index: np.ndarray, value: np.ndarray, size: int) -> np.ndarray:
@@ -193,6 +214,14 @@ def _variable(
             source.refuse(None, f"the same parameters and unit in all columns of {name}", f"{columns[0]} and {column}")
     lead = [n for n in everything if n in own and len(everything[n][0]) > 1]
     sizes = tuple(len(everything[n][0]) for n in lead)
+    combinations = math.prod(sizes)
+    _refuse_sparse(
+        source,
+        combinations * values[0].size,
+        len(values) * values[0].size,
+        f"points and parameters of {name}",
+        ", ".join(lead),
+    )
     out = np.full((*sizes, values[0].size), np.nan, np.result_type(*values))
     seen = np.zeros(sizes, bool)
     for column, value in zip(columns, values, strict=True):
@@ -308,16 +337,19 @@ def _add_rest(
     conjugate: bool,
 ) -> xr.Dataset:
     """The other expressions, under names that are free, and the elements."""
+    alike = Counter(_clean(n) for n in variables)
+    found: dict[str, Any] = {}
     for name, (dims, values, unit) in variables.items():
         word = _clean(name)
-        if word in ds.variables or word in _RESERVED or [_clean(n) for n in variables].count(word) > 1:
+        if word in ds.variables or word in _RESERVED or alike[word] > 1:
             word = re.sub(r"\W+", "_", name).strip("_")
-        while word in ds.variables or word in _RESERVED or word[0].isdigit():
+        while word in ds.variables or word in found or word in _RESERVED or word[0].isdigit():
             word = f"v_{word}"
         attrs = {"units": unit or "1", "long_name": name, "expression": name}
         if not np.iscomplexobj(values):
             attrs["convention"] = "real, as in the file: exp(+i w t)"
-        ds[word] = (dims, np.conj(values) if conjugate else values, attrs)
+        found[word] = (dims, np.conj(values) if conjugate else values, attrs)
+    ds = ds.assign(found)
     if table.elements is not None and "node" in ds.dims:
         ds["elements"] = (
             ("element", "corner"),

@@ -89,6 +89,8 @@ def parse_column(source: Source, line: int, name: str) -> Column:
         if not ASSIGNED.match(text):
             source.refuse(line, "parameters such as 'freq=100, theta=0' after @", repr(text.strip()))
         parameters.append(_parameter(*text.split("=", 1)))
+        if isinstance(value := parameters[-1][1], str) and "inf" not in value.lower() and _overflows(value):
+            source.refuse(line, "numbers within 1e308, as doubles are", repr(text.strip()))
     if not head:
         source.refuse(line, "an expression in each column's name", repr(name))
     return Column(head, unit, tuple(parameters))
@@ -117,6 +119,14 @@ def _parameter(name: str, text: str) -> tuple[str, Any, str]:
     number = text.replace(",", ".")
     value = as_complex(number) if is_number(number) else text.strip("'\"")
     return name.strip(), value.real if isinstance(value, complex) and not value.imag else value, unit.strip(" ]")
+
+
+def _overflows(text: str) -> bool:
+    """Whether a text is a number in digits that no double holds: 1e400, with a unit or without."""
+    try:
+        return bool(re.match(r"[-+\d.,]", text)) and bool(np.isinf(as_complex(text.split()[0].replace(",", "."))))
+    except ValueError:
+        return False
 
 
 def is_number(text: str) -> bool:

@@ -173,9 +173,16 @@ def short(text: str) -> str:
 def to_numbers(source: Source, lines: list[int], cells: list[str]) -> np.ndarray:
     """Cells to floats, or to complex where any has an imaginary part."""
     try:
-        return np.array(cells, dtype=float)
+        numbers = np.array(cells, dtype=float)
     except ValueError:
-        pass
+        numbers = _to_complex(source, lines, cells)
+    for k in np.flatnonzero(np.isinf(numbers)):
+        if "inf" not in cells[k].lower():
+            source.refuse(lines[k], "numbers within 1e308, as doubles are", repr(cells[k]))
+    return numbers
+
+
+def _to_complex(source: Source, lines: list[int], cells: list[str]) -> np.ndarray:
     out = np.empty(len(cells), complex)
     for k, cell in enumerate(cells):
         try:

@@ -1,0 +1,250 @@
+"""netCDF files: written through a guarded file with checksums, read after a look at what they ask for."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import uuid
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import h5netcdf
+import h5py
+import numpy as np
+import xarray as xr
+
+from .blocked import BlockedVariable
+from .guarded import GuardedFile, uninterrupted
+from .seal import Stretch, check_seal, seal
+from .settled import EXPANSION, HARMLESS, load_variable
+
+#: Attribute with the variables that were written: their sizes and types, and the file's token.
+RECORD = "beamprop_variables"
+#: netCDF's record of the libraries that wrote a file, which readers hide and do not copy. It repeats the token: a record that was
+#: copied into another file with the other attributes is recognised by that.
+PROPERTIES = "_NCProperties"
+#: Largest chunk [bytes]: what HDF5's cache of chunks holds.
+CHUNK = 2**20
+#: Space for names, attributes and tables: for a file, for each of its variables, and as a share of the values.
+FOR_FILE, FOR_VARIABLE, FOR_VALUES = 2**16, 2**13, 1 / 256
+#: HDF5's filters that are compiled into it or into h5py. Others are loaded from plug-ins, code of somebody's choice.
+FILTERS = {1: "deflate", 2: "shuffle", 3: "fletcher32", 4: "szip", 5: "nbit", 6: "scaleoffset", 32000: "lzf"}
+#: netCDF's mark of a dataset that stands for the length of a dimension, and is not read.
+LENGTH_ALONE = b"This is a netCDF dimension but not a netCDF variable"
+
+
+def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
+    """Write a dataset; values that dask would still have to compute are computed first."""
+    ds = ds.compute()
+    size = 0 if compression else sum(_stored(v.shape, _chunks(v), v.dtype.itemsize) for v in ds.variables.values())
+    with _new(draft, size, len(ds.variables)) as (file, _):
+        _dump(ds, file, compression)
+
+
+def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
+    """Write one variable block by block, and then the others."""
+    shape = tuple(variable.sizes.values())
+    with _new(draft, _stored(shape, variable.chunks, 16), 8) as (file, guarded):
+        file.dimensions = variable.sizes
+        options: dict[str, Any] = {"chunks": variable.chunks, "fletcher32": True} if shape else {}
+        into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
+        into.attrs.update(variable.attrs)
+        for where, values in variable.blocks:
+            with uninterrupted():
+                into[where] = values
+            guarded.check()
+        _dump(rest(), file, 0)
+
+
+@contextlib.contextmanager
+def _new(draft: Path, size: int, variables: int) -> Iterator[tuple[h5netcdf.File, GuardedFile]]:
+    """A file to fill with about `size` bytes of values; afterwards its variables are recorded and it is sealed."""
+    reserve = size and int(size * (1 + FOR_VALUES)) + FOR_FILE + FOR_VARIABLE * variables
+    guarded = GuardedFile(draft, reserve)
+    try:
+        with uninterrupted():
+            h5 = h5py.File(guarded, "w", track_order=True)
+            file = h5netcdf.File(h5, "w")
+        try:
+            yield file, guarded
+        finally:
+            with uninterrupted():
+                stretches = _close(file, h5)
+        guarded.finish()
+    except Exception:
+        guarded.check()  # a failed write is the cause of whatever followed
+        raise
+    finally:
+        guarded.close()
+    seal(draft, stretches)
+
+
+def _close(file: h5netcdf.File, h5: h5py.File) -> list[Stretch]:
+    """Record the variables and close a file; where their values lie in it."""
+    with h5:
+        file.close()
+        _record(h5)
+        h5.flush()
+        return [s for name, item in h5.items() for s in _stretches(name, item)]
+
+
+def _dump(ds: xr.Dataset, file: h5netcdf.File, compression: int) -> None:
+    encoding = {name: _encoding(v, compression) for name, v in ds.variables.items()}
+    with uninterrupted():
+        ds.dump_to_store(xr.backends.H5NetCDFStore(file), encoding=encoding)
+
+
+def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
+    """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
+    if not v.size or not v.ndim or v.dtype.kind in "OSU":
+        return {}
+    packed = {"zlib": True, "complevel": compression} if compression else {}
+    return {"fletcher32": True, "chunksizes": _chunks(v), **packed}
+
+
+def _chunks(v: xr.Variable) -> tuple[int, ...]:
+    """Chunks of at most `CHUNK` bytes, as even as can be: HDF5 stores those at the ends whole."""
+    chunks = list(v.shape)
+    for axis, length in enumerate(v.shape):
+        rest = v.dtype.itemsize * math.prod(chunks[axis + 1 :])
+        count = -(-length // max(1, CHUNK // max(1, rest)))
+        chunks[axis] = -(-length // max(1, count))
+    return tuple(chunks)
+
+
+def _stored(shape: tuple[int, ...], chunks: tuple[int, ...], size: int) -> int:
+    """Bytes that an array's chunks take."""
+    return size * math.prod(-(-n // max(1, c)) * c for n, c in zip(shape, chunks, strict=True))
+
+
+def _record(h5: h5py.File) -> None:
+    token = uuid.uuid4().hex
+    h5.attrs[RECORD] = json.dumps({"file": token, "variables": _layout(h5)})
+    known = h5.attrs.get(PROPERTIES, b"")
+    text = (known.decode() if isinstance(known, bytes) else str(known)) + f",beamprop={token}"
+    h5.attrs.create(PROPERTIES, np.bytes_(text.lstrip(",")))
+
+
+def _layout(h5: h5py.File) -> dict[str, Any]:
+    """Shape and type of each variable."""
+    return {n: [list(item.shape), str(item.dtype)] for n, item in h5.items() if isinstance(item, h5py.Dataset)}
+
+
+def _stretches(name: str, item: Any) -> list[Stretch]:
+    """Where the values of a dataset lie in the file."""
+    if not isinstance(item, h5py.Dataset):
+        return []
+    if item.chunks is None:
+        start = item.id.get_offset()
+        return [] if start is None else [(start, start + item.id.get_storage_size(), name)]
+    found: list[Stretch] = []
+    item.id.chunk_iter(lambda chunk: found.append((chunk.byte_offset, chunk.byte_offset + chunk.size, name)))
+    return found
+
+
+# --- reading --------------------------------------------------------------------------------------------------
+
+
+def read(path: Path) -> xr.Dataset:
+    """Read a file into memory.
+
+    Raises
+    ------
+    ValueError
+        Names the file, and the variable, that is damaged or asks for what `save` does not write.
+    """
+    check_seal(path)
+    try:
+        with h5py.File(path, "r") as h5:
+            _refuse_foreign(path, h5, h5, set())
+            _check_record(path, h5)
+        opened = xr.open_dataset(path, engine="h5netcdf")
+    except Refusal as error:
+        raise ValueError(str(error)) from None
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(
+            f"{path}: expected a netCDF file, got one that cannot be read, damaged or cut off ({error})"
+        ) from None
+    with opened:
+        for name, v in opened.variables.items():
+            load_variable(path, name, v)
+        ds = opened.load()
+    ds.attrs.pop(RECORD, None)
+    return ds
+
+
+class Refusal(ValueError):
+    """A file is readable, but not to be read."""
+
+
+def _refuse_foreign(path: Path, h5: h5py.File, group: h5py.Group, seen: set[Any]) -> None:
+    """Refuse what `save` does not write: values and groups outside of the file, and filters that would be loaded."""
+    for name in group:
+        link = group.get(name, getlink=True)
+        where = f"{group.name.rstrip('/')}/{name}"
+        if not isinstance(link, h5py.HardLink):
+            raise Refusal(
+                f"{path}: expected variables that lie in the file, got a link at {where!r} ({type(link).__name__})"
+            )
+        item = group[name]
+        address = h5py.h5o.get_info(item.id).addr
+        if address in seen:
+            continue
+        seen.add(address)
+        if isinstance(item, h5py.Group):
+            _refuse_foreign(path, h5, item, seen)
+        elif isinstance(item, h5py.Dataset):
+            _refuse_dataset(path, where, item)
+
+
+def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
+    if item.external:
+        raise Refusal(
+            f"{path}: expected variables that lie in the file, got {where!r} with values in {item.external[0][0]!r}"
+        )
+    if item.is_virtual:
+        raise Refusal(
+            f"{path}: expected variables that lie in the file, got {where!r} made of others (a virtual dataset)"
+        )
+    plist = item.id.get_create_plist()
+    for k in range(plist.get_nfilters()):
+        number, _, _, name = plist.get_filter(k)
+        if number not in FILTERS:
+            raise Refusal(
+                f"{path}: expected the filters {', '.join(FILTERS.values())}, got {where!r} with filter {number} {name.decode(errors='replace')!r}"
+            )
+    if bytes(item.attrs.get("NAME", b"")).startswith(LENGTH_ALONE):
+        return
+    asked = item.dtype.itemsize * math.prod(item.shape or ())
+    if asked > HARMLESS and asked > EXPANSION * item.id.get_storage_size():
+        raise Refusal(
+            f"{path}: expected values, got {where!r} of {asked:.3g} bytes, of which {item.id.get_storage_size()} are stored"
+        )
+
+
+def _check_record(path: Path, h5: h5py.File) -> None:
+    """Compare the variables with those that were written; a record copied from another file is none."""
+    text, properties = h5.attrs.get(RECORD), h5.attrs.get(PROPERTIES, b"")
+    if not isinstance(text, str):
+        return
+    try:
+        record: Mapping[str, Any] = json.loads(text)
+        token, written = record["file"], dict(record["variables"])
+    except (ValueError, LookupError, TypeError):
+        raise Refusal(f"{path}: expected the list of its variables in {RECORD!r}, got {text[:60]!r}") from None
+    if f"beamprop={token}".encode() not in bytes(properties):
+        return
+    found = _layout(h5)
+    for name, layout in written.items():
+        if name not in found:
+            raise Refusal(
+                f"{path}: expected the variable {name!r}, which was written, got {', '.join(found) or 'none'}"
+            )
+        if found[name] != layout:
+            raise Refusal(
+                f"{path}: expected variable {name!r} of shape and type {layout}, as written, got {found[name]}"
+            )
