@@ -67,6 +67,16 @@ def question(rng: Rng, kind: str, slab: bp.Slab, frequency: float, chances: tupl
     return Case(kind, source, slab, beam, float(frequency), x, z, draw_rtol(rng))
 
 
+def brought_near(rng: Rng, case: Case, lam: float) -> Case:
+    """Half of the cases with a narrow Gaussian close to the slab, whose evanescent waves meet the guided modes."""
+    if case.source != "Gaussian, launch" or rng.random() < 0.4:
+        return case
+    z0 = -lam * float(rng.choice([0.0, log_uniform(rng, 0.005, 0.3)], p=[0.4, 0.6]))
+    beam = bp.GaussianBeam(lam * log_uniform(rng, 0.1, 2), float(rng.uniform(-80, 80)), case.beam.x0, z0)
+    x = user_grid(rng, beam, lam)
+    return case._replace(beam=beam, x=x, z=user_planes(rng, beam, case.slab.thickness, lam, case.source))
+
+
 def draw_rtol(rng: Rng) -> float:
     """From 1e-11 to 1e-3, by decade."""
     return float(10 ** rng.uniform(-11, -3))
@@ -102,7 +112,11 @@ def _half_space_backward(rng: Rng, kind: str) -> Case:
         RHO_AIR * (rho + 1j * loss * of_density * abs(rho)),
         bp.AIR.bulk_modulus * (K - 1j * loss * of_modulus * abs(K)),
     )
-    return question(rng, kind, bp.Slab(_layers(rng, lam), 1, after=after), f, ENTIRE)
+    layers = _layers(rng, lam)
+    if rng.random() < 0.5:  # a thin layer heavier than the half-space is light
+        heavy = fluid_like_air(rng, abs(rho) * log_uniform(rng, 1, 5), log_uniform(rng, 0.3, 10))
+        layers = [bp.Layer(heavy, lam * log_uniform(rng, 0.01, 0.2))]
+    return brought_near(rng, question(rng, kind, bp.Slab(layers, 1, after=after), f, ENTIRE), lam)
 
 
 def _before_density_zero(rng: Rng, kind: str) -> Case:
@@ -111,11 +125,14 @@ def _before_density_zero(rng: Rng, kind: str) -> Case:
     rho, K = -log_uniform(rng, 0.1, 5), log_uniform(rng, 0.2, 5)
     rho, K = (rho, K) if rng.random() < 0.7 else (-rho, -K)
     negative = bp.Layer(fluid_like_air(rng, rho, K, some_loss(rng)), lam * log_uniform(rng, 0.02, 0.5))
+    if rng.random() < 0.5:  # thin and light: it guides a backward wave
+        fluid = fluid_like_air(rng, -rng.uniform(0.2, 1.0), log_uniform(rng, 0.5, 3), 0.0)
+        negative = bp.Layer(fluid, lam * log_uniform(rng, 0.01, 0.15))
     zero = bp.Layer(bp.Fluid(0.0, bp.AIR.bulk_modulus * log_uniform(rng, 0.2, 5)), lam * log_uniform(rng, 0.02, 1))
     front = _layers(rng, lam, 2) if rng.random() < 0.5 else []
     between = _layers(rng, lam, 1) if rng.random() < 0.3 else []
     behind = _layers(rng, lam, 2) if rng.random() < 0.4 else []
-    case = question(rng, kind, bp.Slab([*front, negative, *between, zero, *behind], 1), f)
+    case = brought_near(rng, question(rng, kind, bp.Slab([*front, negative, *between, zero, *behind], 1), f), lam)
     wall = sum(y.thickness for y in [*front, negative, *between])
     more = [wall] * int(rng.random() < 0.3) + [wall * rng.uniform(0, 1)]
     return case._replace(z=np.union1d(case.z, more))

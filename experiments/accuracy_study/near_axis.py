@@ -14,9 +14,9 @@ import numpy as np
 
 from .medium import Medium
 
-#: Digits; terms of the series; and the share of the smallest wavenumber up to which they are used, and computed.
-DIGITS, TERMS = 50, 28
-USED, COMPUTED = 0.05, 0.12
+#: Digits; terms of the series; and the share of the nearest branch point up to which they are used, and computed.
+DIGITS, TERMS = 50, 32
+USED, COMPUTED = 0.2, 0.5
 
 
 class NearAxis:
@@ -24,7 +24,7 @@ class NearAxis:
 
     def __init__(self, m: Medium, z: np.ndarray, z0: float) -> None:
         layers = [v for part, periods in m.segments for _ in range(periods) for v in part]
-        waves = [abs(b) for b in m.branch_points()] + [m.omega * abs(v[1] / v[2]) ** 0.5 for v in layers]
+        waves = [abs(b) for b in m.branch_points()]  # layers are entire functions of u
         self.m, self.z0, self.z = m, z0, z
         self.scale = COMPUTED * min(waves)
         self.radius = USED * min(waves)

@@ -26,6 +26,8 @@ EPS = float(np.finfo(float).eps)
 MOST_NODES, SILENT = 120_000, 1e-280
 #: Classes with resonances at normal incidence so sharp that double precision does not resolve them.
 SHARP = ("sharp resonances",)
+#: Classes with planes on which waves cancel, where little rounding may be magnified.
+DARK = ("nearly dark planes", "negative layer before density 0", "nearly rigid half-space", "behind a mirror, band edge")
 
 
 class Truth(NamedTuple):
@@ -101,7 +103,8 @@ def _contour(s: _Setting, step: int, shallow: float) -> tuple[Contour, Grading]:
     pinch = _pinch(s)
     kb = min([b for b in s.m.branches() if b > 0.05 * s.m.k0], default=s.m.k0)
     start, end = _ends(s, 1e-22 if odd else 1e-18)
-    depth = shallow * min((0.3 - 0.07 * odd) * kb, (6 - 1.5 * odd) / max(s.extent, s.reach, 1e-9))
+    growth = 2.0 if s.case.kind in DARK else 6.0  # exp(growth) magnifies rounding
+    depth = shallow * min((0.3 - 0.07 * odd) * kb, (1 - 0.25 * odd) * growth / max(s.extent, s.reach, 1e-9))
     depth = min(depth, *(0.45 * abs(b) for b in s.m.branch_points() if b.real <= abs(b.imag)), math.inf)
     corner = min((0.45 + 0.2 * odd) * kb, (0.4 + 0.2 * odd) * end)
     if pinch < math.inf:
@@ -244,4 +247,6 @@ def _agreement(
     seen = np.where(scale > SILENT, scale, np.inf)
     unknown = _cancelled(s, bright, seen)
     error = np.abs(p - before).max(axis=1) / seen + unknown
-    return Truth(p[:, : s.case.x.size], scale, error, unknown > 0.1 * s.case.rtol, wrong)
+    dark = unknown > 0.1 * s.case.rtol
+    dark |= (error > 0.1 * s.case.rtol) & (error * scale < 1e-14 * bright)
+    return Truth(p[:, : s.case.x.size], scale, error, dark, wrong)
