@@ -73,8 +73,12 @@ def _samples(lo: float, hi: float, g: Grading, ray: bool) -> np.ndarray:
     return np.unique(np.concatenate([s[(s >= lo) & (s <= hi)], [lo, hi]]))
 
 
-def real_nodes(m: Medium, length: float, finer: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def real_nodes(
+    m: Medium, length: float, finer: float, pinched: bool = False
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Panels over 0 < kx < k0 in alpha, kx = k0 sin(alpha), graded towards the branch points inside; and kz.
+
+    Towards 0 too, where something is near it (`pinched`).
 
     Not towards k0, where alpha itself takes the root out: a kx that rounds to k0 has no response.
     """
@@ -83,7 +87,7 @@ def real_nodes(m: Medium, length: float, finer: float) -> tuple[np.ndarray, np.n
     for lo, hi in itertools.pairwise(stops):
         fine = np.linspace(lo, hi, math.ceil(finer * (4 + m.k0 * length / 6)))
         steep = (hi - lo) / 2 * 2.0 ** -np.arange(1, 26)
-        graded = [lo + steep] * int(lo > 0) + [hi - steep] * int(hi < stops[-1])
+        graded = [lo + steep] * int(lo > 0 or pinched) + [hi - steep] * int(hi < stops[-1])
         a, w = panels(np.unique(np.concatenate([fine, *graded])))
         nodes.append(m.k0 * np.sin(a))
         weights.append(m.k0 * np.cos(a) * w)

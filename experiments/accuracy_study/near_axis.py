@@ -14,9 +14,11 @@ import numpy as np
 
 from .medium import Medium
 
-#: Digits; terms of the series; and the share of the nearest branch point up to which they are used, and computed.
+#: Digits, and terms of the series.
 DIGITS, TERMS = 50, 32
-USED, COMPUTED = 0.2, 0.5
+#: The series are computed on a circle: so much of the way to the nearest branch point, and |kx| times the thickness no more
+#: than this (D grows as its cosh); they are used within so much of it.
+COMPUTED, GROWTH, USED = 0.5, 12.0, 0.4
 
 
 class NearAxis:
@@ -26,20 +28,16 @@ class NearAxis:
         layers = [v for part, periods in m.segments for _ in range(periods) for v in part]
         waves = [abs(b) for b in m.branch_points()]  # layers are entire functions of u
         self.m, self.z0, self.z = m, z0, z
-        self.scale = COMPUTED * min(waves)
-        self.radius = USED * min(waves)
+        self.scale = min(COMPUTED * min(waves), GROWTH / m.thickness)
+        self.radius = USED * self.scale
         with mpmath.workdps(DIGITS):
             circle = [mpmath.expjpi(2 * mpmath.mpf(j) / TERMS) for j in range(TERMS)]
             values = [_states(m, layers, z, mpmath.mpf(self.scale) ** 2 * c) for c in circle]
             rows = np.array([_coefficients([v[i] for v in values], circle) for i in range(z.size + 1)])
         self.denominator, self.numerators = rows[0], rows[1:]
-
-    def smallest(self) -> float:
-        """|kx| of the pole nearest to 0."""
-        terms = self.denominator[: TERMS // 2]
-        roots = np.abs(np.roots(terms[::-1] / np.abs(terms).max()))
-        found = min([r for r in roots if r > 0], default=1.0)
-        return float(self.scale * np.sqrt(found))
+        roots = np.abs(np.roots(self.denominator[8::-1] / np.abs(self.denominator[:9]).max()))
+        #: |kx| of the pole nearest to 0.
+        self.smallest = float(self.scale * np.sqrt(min([r for r in roots if r > 0], default=1.0)))
 
     def response(self, k: np.ndarray) -> np.ndarray:
         """As `Medium.response`, for |kx| < radius."""

@@ -89,10 +89,15 @@ def _ends(s: _Setting, tolerance: float) -> tuple[float, float]:
 
 
 def _pinch(s: _Setting) -> float:
-    """How near to kx = 0 a pole or branch point lies, where that is much nearer than k0; else infinite."""
+    """How near to kx = 0 a pole or branch point lies, where that is much nearer than k0; else infinite.
+
+    A layer of little density lets through what arrives with kx below k0 sqrt(density), relative to the medium in front.
+    """
     scales = [abs(b) for b in s.m.branch_points()]
+    thin = [abs(v[1] / s.m.before[1]) for layers, _ in s.m.segments for v in layers]
+    scales += [s.m.k0 * math.sqrt(ratio) for ratio in thin if ratio > 0]
     if s.near is not None:
-        scales.append(s.near.smallest())
+        scales.append(s.near.smallest)
     smallest = min(scales)
     return smallest if smallest < 0.05 * s.m.k0 else math.inf
 
@@ -103,7 +108,7 @@ def _contour(s: _Setting, step: int, shallow: float) -> tuple[Contour, Grading]:
     pinch = _pinch(s)
     kb = min([b for b in s.m.branches() if b > 0.05 * s.m.k0], default=s.m.k0)
     start, end = _ends(s, 1e-22 if odd else 1e-18)
-    growth = 2.0 if s.case.kind in DARK else 6.0  # exp(growth) magnifies rounding
+    growth = 2.0 if s.case.kind in DARK + SHARP else 6.0  # exp(growth) magnifies rounding
     depth = shallow * min((0.3 - 0.07 * odd) * kb, (1 - 0.25 * odd) * growth / max(s.extent, s.reach, 1e-9))
     depth = min(depth, *(0.45 * abs(b) for b in s.m.branch_points() if b.real <= abs(b.imag)), math.inf)
     corner = min((0.45 + 0.2 * odd) * kb, (0.4 + 0.2 * odd) * end)
@@ -196,9 +201,10 @@ def _cancelled(s: _Setting, bright: np.ndarray, scale: np.ndarray) -> np.ndarray
 
 
 def _rounding(s: _Setting) -> float:
-    """What rounding of periods, and of a profile's positions far from x = 0, leaves unknown."""
+    """What rounding of periods, of long phases, and of a profile's positions far from x = 0, leaves unknown."""
     origin = abs(s.case.beam.centre) if isinstance(s.case.beam, bp.Profile) else 0.0
-    return EPS * sum(len(layers) * count for layers, count in s.m.segments) + 4 * EPS * s.m.k0 * origin
+    periods = sum(len(layers) * count for layers, count in s.m.segments)
+    return EPS * (periods + s.m.k0 * (4 * origin + s.extent + s.path))
 
 
 def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
@@ -213,7 +219,8 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     why = "too many nodes"
     for step in range(5):
         if s.rotated:
-            k, w, kz = real_nodes(s.m, s.extent + s.reach + 2 * s.path + s.m.thickness, 1.5 ** (2 * step))
+            length = s.extent + s.reach + 2 * s.path + s.m.thickness
+            k, w, kz = real_nodes(s.m, length, 1.5 ** (2 * step), _pinch(s) < math.inf)
         else:
             (k, w), kz = _nodes(s, step, shallow, wrong), None
         if k.size > MOST_NODES:

@@ -43,7 +43,7 @@ def answer(case: Case, x: np.ndarray, z: np.ndarray, angles: np.ndarray | None) 
     if angles is not None and ds is not None:  # the warning is of the worst angle
         row["warned"] = row["warned"] and float(ds.error_estimate) > case.rtol
     other = [str(w.message) for w in caught if not issubclass(w.category, bp.AccuracyWarning)]
-    if other:
+    if other and not row["reason"]:
         row["reason"] = f"warning: {other[0][:80]}"
     return ds, row
 
