@@ -218,11 +218,18 @@ def _printed(rng: Rng, kind: str) -> Case:
     f, lam = draw_frequency(rng)
     case = question(rng, kind, SLABS[str(rng.choice(EASY))](rng, lam), f)
     half = max(case.beam.reach(0.5) * log_uniform(rng, 0.5, 10), 0.5 * lam)
-    half = min(half, 200 * lam)
+    half = min(half, 300 * lam)
     middle = case.beam.centre + rng.choice([0.0, rng.uniform(-1, 1) * half])
     count = int(rng.choice([41, 101, 401, 1000, 1024, 2048, 4096]))
-    digits = int(rng.integers(9, 13))
-    return case._replace(x=rounded(middle + half * np.linspace(-1, 1, count), digits))
+    x = middle + half * np.linspace(-1, 1, count)
+    if isinstance(case.beam, bp.GaussianBeam) and rng.random() < 0.4:  # beside x = 0: positions are large beside their span
+        away = float(rng.uniform(1, 50))
+        beam = case.beam
+        beam = bp.GaussianBeam(beam.fwhm, beam.angle, beam.x0 + away, beam.z0, form=beam.form)
+        case, x = case._replace(beam=beam), x + away
+    digits = int(rng.choice([9, 10, 11, 12], p=[0.15, 0.15, 0.3, 0.4]))
+    rtol = case.rtol if rng.random() < 0.3 else float(10 ** rng.uniform(-11, -8))
+    return case._replace(x=rounded(x, digits), rtol=rtol)
 
 
 def _long(rng: Rng, kind: str) -> Case:
@@ -280,7 +287,8 @@ def _very_wide(rng: Rng, kind: str) -> Case:
     count = int(rng.integers(5, 200))
     x = beam.x0 + half * (np.linspace(-1, 1, count) if rng.random() < 0.6 else np.sort(rng.uniform(-1, 1, count)))
     z = user_planes(rng, beam, slab.thickness, lam, "Gaussian, launch")
-    return Case(kind, "Gaussian, launch", slab, beam, f, x, z, draw_rtol(rng))
+    rounding = 2.2e-16 * 2 * np.pi / lam * (np.abs(x - beam.x0).max() + beam.reach(1e-16))  # of phases
+    return Case(kind, "Gaussian, launch", slab, beam, f, x, z, max(draw_rtol(rng), 40 * rounding))
 
 
 # --- many guided modes ------------------------------------------------------------------------------------

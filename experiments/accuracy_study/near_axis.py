@@ -22,29 +22,40 @@ COMPUTED, GROWTH, USED = 0.5, 12.0, 0.4
 
 
 class NearAxis:
-    """Series of the denominator D and, for each plane, of the numerator N in u = (kx / scale)^2."""
+    """Series in u = (kx / scale)^2 of the waves (forward, backward) at the near face and of p at planes inside.
+
+    All for p = 1 at the far face, so that forward is the denominator of every response.
+    """
 
     def __init__(self, m: Medium, z: np.ndarray, z0: float) -> None:
         layers = [v for part, periods in m.segments for _ in range(periods) for v in part]
-        waves = [abs(b) for b in m.branch_points()]  # layers are entire functions of u
+        nearest = min(abs(b) for b in m.branch_points())  # layers are entire functions of u
         self.m, self.z0, self.z = m, z0, z
-        self.scale = min(COMPUTED * min(waves), GROWTH / m.thickness)
+        self.scale = min(COMPUTED * nearest, GROWTH / m.thickness)
         self.radius = USED * self.scale
+        self.inside = np.flatnonzero((z > 0) & (z < m.thickness))
         with mpmath.workdps(DIGITS):
             circle = [mpmath.expjpi(2 * mpmath.mpf(j) / TERMS) for j in range(TERMS)]
-            values = [_states(m, layers, z, mpmath.mpf(self.scale) ** 2 * c) for c in circle]
-            rows = np.array([_coefficients([v[i] for v in values], circle) for i in range(z.size + 1)])
-        self.denominator, self.numerators = rows[0], rows[1:]
-        roots = np.abs(np.roots(self.denominator[8::-1] / np.abs(self.denominator[:9]).max()))
+            values = [_waves(m, layers, z[self.inside], mpmath.mpf(self.scale) ** 2 * c) for c in circle]
+            self.series = np.array([_coefficients(list(row), circle) for row in zip(*values, strict=True)])
+        some = self.series[0, :9]
+        roots = np.abs(np.roots(some[::-1] / np.abs(some).max()))
         #: |kx| of the pole nearest to 0.
         self.smallest = float(self.scale * np.sqrt(min([r for r in roots if r > 0], default=1.0)))
 
     def response(self, k: np.ndarray) -> np.ndarray:
         """As `Medium.response`, for |kx| < radius."""
-        u = (k / self.scale) ** 2
-        launch = np.exp(-1j * self.m.kz(self.m.before, k) * self.z0)
-        powers = u[None] ** np.arange(TERMS)[:, None]
-        return (self.numerators @ powers) / (self.denominator @ powers) * launch
+        forward, backward, *inside = self.series @ ((k / self.scale) ** 2)[None] ** np.arange(TERMS)[:, None]
+        kz1, kz2 = self.m.kz(self.m.before, k), self.m.kz(self.m.after, k)
+        out = np.empty((self.z.size, k.size), complex)
+        for row, depth in zip(out, self.z, strict=True):
+            if depth <= 0:
+                row[:] = np.exp(1j * kz1 * depth) + backward / forward * np.exp(-1j * kz1 * depth)
+            else:
+                row[:] = np.exp(1j * kz2 * (depth - self.m.thickness)) / forward
+        for i, p in zip(self.inside, inside, strict=True):
+            out[i] = p / forward
+        return out * np.exp(-1j * kz1 * self.z0)
 
 
 def _coefficients(values: list[Any], circle: list[Any]) -> np.ndarray:
@@ -69,32 +80,18 @@ def _step(state: tuple, fluid: tuple, d: Any, omega: Any, u: Any) -> tuple:
     return state[0] * c - state[1] * rho * s / kz, state[0] * kz * s / rho + state[1] * c
 
 
-def _states(m: Medium, layers: list, z: np.ndarray, u: Any) -> list[Any]:
-    """D, and N at each plane, at one u, per unit of launched wave at z = 0."""
+def _waves(m: Medium, layers: list, z: np.ndarray, u: Any) -> list[Any]:
+    """Forward and backward wave at the near face, and p at planes inside, at one u."""
     omega = mpmath.mpf(m.omega)
-    front, back = _root(m.before, omega, u), _root(m.after, omega, u)
-    state = (mpmath.mpf(1), 1j * back / mpmath.mpmathify(m.after[0]))
-    faces = np.concatenate([[0.0], np.cumsum([v[3] for v in layers])])
-    inside: dict[int, Any] = {}
-    exact = [mpmath.mpf(0)]
+    state = (mpmath.mpf(1), 1j * _root(m.after, omega, u) / mpmath.mpmathify(m.after[0]))
+    faces = [mpmath.mpf(0)]
     for v in layers:
-        exact.append(exact[-1] + mpmath.mpf(v[3]))
-    order = [i for i in np.argsort(-z, kind="stable") if 0 < z[i] < m.thickness]
-    for n in range(len(layers) - 1, -1, -1):
-        for i in order:
-            if faces[n] <= z[i] < faces[n + 1] or (n == len(layers) - 1 and z[i] >= faces[-1]):
-                inside[i] = _step(state, layers[n], exact[n + 1] - mpmath.mpf(z[i]), omega, u)[0]
+        faces.append(faces[-1] + mpmath.mpf(v[3]))
+    of_layer = np.clip(np.searchsorted([float(f) for f in faces], z, side="right") - 1, 0, len(layers) - 1)
+    inside: dict[int, Any] = {}
+    for n in reversed(range(len(layers))):
+        for i in np.flatnonzero(of_layer == n):
+            inside[int(i)] = _step(state, layers[n], faces[n + 1] - mpmath.mpf(z[i]), omega, u)[0]
         state = _step(state, layers[n], mpmath.mpf(layers[n][3]), omega, u)
-    y = 1j * front / mpmath.mpmathify(m.before[0])
-    # state = s (1 + r, y (1 - r)): forward is s, backward s r
-    forward, backward = (state[0] + state[1] / y) / 2, (state[0] - state[1] / y) / 2
-    out = [forward]
-    for i, depth in enumerate(z):
-        at = mpmath.mpf(depth)
-        if depth <= 0:
-            out.append(forward * mpmath.expj(front * at) + backward * mpmath.expj(-front * at))
-        elif i in inside:
-            out.append(inside[i])
-        else:
-            out.append(mpmath.expj(back * (at - exact[-1])))
-    return out
+    y = 1j * _root(m.before, omega, u) / mpmath.mpmathify(m.before[0])
+    return [(state[0] + state[1] / y) / 2, (state[0] - state[1] / y) / 2, *(inside[i] for i in range(z.size))]

@@ -14,8 +14,14 @@ from .slabs import SLABS
 #: Cases of the whole study: those of the first fifteen classes, and as many hard ones as make 3000.
 CASES = 3000
 KINDS = [*SLABS, *HARD]
-#: Grids of more points than this are asked for by themselves.
-MANY = 5000
+#: Grids of more points, and fields wider in wavelengths, than these are asked for by themselves.
+MANY, WIDE = 5000, 3000
+
+
+def is_large(case: Case) -> bool:
+    """Whether many angles or planes of it would take too long."""
+    k0 = float(case.slab.before.wavenumber(case.frequency).real)
+    return case.x.size > MANY or max(np.ptp(case.x), case.beam.reach(0.5)) * k0 / (2 * np.pi) > WIDE
 
 
 def make_case(number: int) -> Case:
@@ -37,7 +43,7 @@ def quick_numbers() -> list[int]:
 
 def fan_of(number: int, case: Case) -> np.ndarray | None:
     """For one case in seven: 40 or 150 angles among which its own is asked for."""
-    if number % 7 or getattr(case.beam, "form", "launch") == "rotated" or case.x.size > MANY:
+    if number % 7 or getattr(case.beam, "form", "launch") == "rotated" or (number >= FIRST and is_large(case)):
         return None
     rng = np.random.default_rng([SEED, number, 1])
     angles = rng.uniform(-89, 89, int(rng.choice([40, 150])))
@@ -47,7 +53,7 @@ def fan_of(number: int, case: Case) -> np.ndarray | None:
 
 def map_of(number: int, case: Case) -> tuple[np.ndarray, np.ndarray]:
     """x and z that are asked for; for one case in five a map of many planes and positions, the case's own among them."""
-    if number % 5 != 1 or number % 7 == 0 or case.x.size > MANY:
+    if number % 5 != 1 or number % 7 == 0 or (number >= FIRST and is_large(case)):
         return case.x, case.z
     rng = np.random.default_rng([SEED, number, 2])
     half = max(np.ptp(case.x) / 2, case.beam.reach(0.5))
