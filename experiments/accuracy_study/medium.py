@@ -82,10 +82,11 @@ class Medium:
         return [b.real for b in self.branch_points() if b.real > abs(b.imag)]
 
     def kz(self, fluid: tuple, k: np.ndarray) -> np.ndarray:
-        """The outgoing root below the right half of the axis, and a little above it beyond the branch point."""
+        """The outgoing root below the right half of the axis, and above it: before the branch point, and beyond."""
         rho_z, rho_x, K = fluid[:3]
         square = rho_z * (self.omega**2 / K - (k**2 / rho_x if np.isfinite(rho_x) else 0)) + 0j
-        return np.exp(0.25j * np.pi) * np.sqrt(-1j * square)
+        root = np.exp(0.25j * np.pi) * np.sqrt(-1j * square)
+        return np.where((k.imag > 0) & (square.real < 0), 1j * np.sqrt(-square), root)
 
     def layer(self, fluid: tuple, d: float, k: np.ndarray, y: np.ndarray) -> Scatter:
         """One layer between two reference media: 1/t = cos - (i/2) (y A + B/y) s, r/t = (i/2) (B/y - y A) s."""

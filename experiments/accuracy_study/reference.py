@@ -14,6 +14,7 @@ import numpy as np
 
 import beamprop as bp
 
+from .bands import Tent, sided_nodes, stretches
 from .cases import Case
 from .contour import Contour, Grading, bent_nodes, panels, real_nodes
 from .medium import Medium
@@ -26,8 +27,15 @@ EPS = float(np.finfo(float).eps)
 MOST_NODES, SILENT = 120_000, 1e-280
 #: Classes with resonances at normal incidence so sharp that double precision does not resolve them.
 SHARP = ("sharp resonances",)
+#: Classes of lossless slabs of very many periods, whose Bloch waves tell on which side of the axis the contour passes.
+BANDED = ("100 000 lossless periods",)
 #: Classes with planes on which waves cancel, where little rounding may be magnified.
-DARK = ("nearly dark planes", "negative layer before density 0", "nearly rigid half-space", "behind a mirror, band edge")
+DARK = (
+    "nearly dark planes",
+    "negative layer before density 0",
+    "nearly rigid half-space",
+    "behind a mirror, band edge",
+)
 
 
 class Truth(NamedTuple):
@@ -79,7 +87,8 @@ def _setting(case: Case, own: np.ndarray) -> _Setting:
 def _ends(s: _Setting, tolerance: float) -> tuple[float, float]:
     """Re kx between which the source's spectrum, and what of it arrives, is not negligible."""
     end = s.source.band(tolerance)
-    gap = max(s.case.z.min() - s.case.beam.z0, 0.0)
+    nearest = float(s.case.z.min())  # waves decay in the half-spaces; through a slab they may go on undiminished
+    gap = min(nearest, 0.0) - s.case.beam.z0 + max(0.0, nearest - s.m.thickness)
     if gap > 0:
         end = min(end, math.hypot(s.m.k0, 42 / gap) + s.m.k0)
     if not isinstance(s.case.beam, bp.GaussianBeam):
@@ -125,12 +134,30 @@ def _misplaced(s: _Setting) -> tuple[list[complex] | None, float]:
     shallow = 1.0
     while True:
         c, _ = _contour(s, 0, shallow)
-        z0 = -s.case.beam.z0
-        end = min(c.end, math.hypot(s.m.k0, 42 / z0) + s.m.k0) if z0 > 0 else c.end  # what reaches the slab at all
+        end = _slab_end(s, c.end)
         wrong = wrong_side(s.case.slab, s.case.frequency, s.m, 1.01 * c.depth, 0.9 * c.corner, end)
         if wrong is not None or shallow < 0.01 or is_lossless(s.m):
             return wrong, shallow
         shallow /= 4
+
+
+def _slab_end(s: _Setting, end: float) -> float:
+    """|kx| beyond which nothing that reaches the slab comes back."""
+    z0 = -s.case.beam.z0
+    return min(end, math.hypot(s.m.k0, 42 / z0) + s.m.k0) if z0 > 0 else end
+
+
+def _sided_nodes(s: _Setting, step: int) -> tuple[np.ndarray, np.ndarray]:
+    """A contour on either side of the axis, for periodic slabs without loss or nearly."""
+    odd = step % 2
+    _, end = _ends(s, 1e-22 if odd else 1e-18)
+    deepest = min((0.3 - 0.07 * odd) * s.m.k0, (1 - 0.25 * odd) * 4 / max(s.extent, s.reach, 1e-9))
+    highest = min(deepest, (1 - 0.25 * odd) * 2 / max(s.path, 1e-9))  # above the axis waves grow along z
+    tents = []
+    for part in stretches(s.m, end, _slab_end(s, end)):
+        height = min(highest if part.side > 0 else deepest, (0.3 - 0.05 * odd) * (part.hi - part.lo))
+        tents.append(Tent(part, height, 0.8 - 0.2 * odd))
+    return sided_nodes(s.m, tents, s.extent + s.reach, s.path, 1.5**step)
 
 
 def _nodes(s: _Setting, step: int, shallow: float, wrong: list[complex]) -> tuple[np.ndarray, np.ndarray]:
@@ -210,7 +237,8 @@ def _rounding(s: _Setting) -> float:
 def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     """The field by two quadratures that agree to a tenth of rtol, if they can to `goal`; or why there is none."""
     s = _setting(case, own)
-    wrong, shallow = ([], 1.0) if s.rotated else _misplaced(s)
+    sided = case.kind in BANDED and not s.rotated
+    wrong, shallow = ([], 1.0) if s.rotated or sided else _misplaced(s)
     if wrong is None:
         return "backward modes not located"
     elsewhere = np.zeros(case.z.size) if s.near is not None else brightness(s.m, s.source, case.z)
@@ -221,6 +249,8 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
         if s.rotated:
             length = s.extent + s.reach + 2 * s.path + s.m.thickness
             k, w, kz = real_nodes(s.m, length, 1.5 ** (2 * step), _pinch(s) < math.inf)
+        elif sided:
+            (k, w), kz = _sided_nodes(s, step), None
         else:
             (k, w), kz = _nodes(s, step, shallow, wrong), None
         if k.size > MOST_NODES:
