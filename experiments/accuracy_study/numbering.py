@@ -21,7 +21,11 @@ MANY, WIDE = 5000, 3000
 def is_large(case: Case) -> bool:
     """Whether many angles or planes of it would take too long."""
     k0 = float(case.slab.before.wavenumber(case.frequency).real)
-    return case.x.size > MANY or max(np.ptp(case.x), case.beam.reach(0.5)) * k0 / (2 * np.pi) > WIDE
+    return (
+        case.source == "Slits"
+        or case.x.size > MANY
+        or max(np.ptp(case.x), case.beam.reach(0.5)) * k0 / (2 * np.pi) > WIDE
+    )
 
 
 def make_case(number: int) -> Case:
