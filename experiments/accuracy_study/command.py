@@ -13,6 +13,7 @@ from . import report
 from .limit import limit_table, limiting_absorption
 from .numbering import CASES, KINDS, numbers_of, quick_numbers
 from .study import study
+from .terms import term_table
 
 
 def compute(quick: bool = False, workers: int = 2) -> dict[str, xr.Dataset]:
@@ -33,6 +34,7 @@ def arguments(text: str) -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=40, help="how many of each class")
     parser.add_argument("--skip", type=int, default=0, help="how many of each class to pass over first")
     parser.add_argument("--case", type=int, action="append", help="the case of this number alone")
+    parser.add_argument("--terms", action="store_true", help="whether every term of the error estimate is needed")
     return parser.parse_args()
 
 
@@ -46,6 +48,9 @@ def chosen(options: argparse.Namespace) -> list[int]:
 def main(text: str) -> None:
     """Run what is asked for and print it."""
     options = arguments(text)
+    if options.terms:
+        print(term_table())
+        return
     if options.kind or options.case:
         ds = study(chosen(options), options.workers)
         print(report.class_table(ds), report.reasons(ds), report.faults(ds), sep="\n\n")
