@@ -178,7 +178,7 @@ def _band_edge(rng: Rng, kind: str) -> Case:
     )  # half the width of the stop band, over its middle
     side = rng.choice([-1, 1])
     beside = side * half * (1 - rng.choice([1, 1, -0.3]) * log_uniform(rng, 1e-5, 0.1))
-    case = question(rng, kind, bp.Slab(cell, int(log_uniform(rng, 10, 400))), f * (1 + beside))
+    case = question(rng, kind, bp.Slab(cell, int(log_uniform(rng, 10, 400))), f * (1 + beside), (0.75, 0.1, 0.15, 0.0))
     if rng.random() < 0.5 and case.source == "Gaussian, launch":
         case = case._replace(beam=case.beam.at_angle(0.0))
     behind = case.slab.thickness + lam * np.array([0.0, log_uniform(rng, 0.01, 50)])
