@@ -1,5 +1,6 @@
 """How the accuracy study judges: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -98,3 +99,38 @@ def test_the_command_runs_one_case_and_one_class():
     )  # fmt: skip
     assert "| air alone | 1 |" in done.stdout
     assert "| nearly rigid half-space | 1 |" in done.stdout
+
+
+# --- the study's own walls ----------------------------------------------------------------------------------
+
+STUDY = sorted((ROOT / "experiments" / "accuracy_study").glob("*.py"))
+#: What the package does none of: these see its media and sources, never an answer.
+TRUTH = ("source", "medium", "near_axis", "misplaced", "contour", "bands", "reference")
+#: A file of the study imports only from those before it.
+ORDER = ("slabs", "source", "cases", "hard", "numbering", "medium", "near_axis", "misplaced", "contour", "bands", "reference",
+         "study", "report", "limit", "terms", "command")  # fmt: skip
+
+
+def used(path):
+    """Names that a file takes from beamprop, and the files of the study that it imports."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    names = {
+        n.attr
+        for n in ast.walk(tree)
+        if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name) and n.value.id == "bp"
+    }
+    own = {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.level}
+    inner = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and (n.module or "").startswith("beamprop")]
+    return names, own, inner
+
+
+@pytest.mark.parametrize("path", STUDY, ids=lambda path: path.stem)
+def test_the_truth_uses_nothing_that_it_judges(path):
+    """Only definitions of media and sources come from the package, through its public names; files are short, one way."""
+    names, own, inner = used(path)
+    assert not inner
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 350
+    if path.stem in TRUTH:
+        assert names <= {"Slab", "Fluid", "GaussianBeam", "Profile", "Slits"}
+    if path.stem != "__init__":
+        assert own - {""} <= set(ORDER[: ORDER.index(path.stem)])

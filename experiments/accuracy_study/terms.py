@@ -61,9 +61,7 @@ def on_the_axis(case: Case) -> Truth:
         edges = np.concatenate([np.linspace(0, end, count), *near])
         k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
         x = case.x - case.beam.centre
-        fields.append(
-            field_sum(source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, x)
-        )
+        fields.append(field_sum(source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, x))
     scale = np.abs(fields[1]).max(axis=1)
     error = np.abs(fields[1] - fields[0]).max(axis=1) / scale
     return Truth(fields[1], scale, error, np.zeros(scale.size, bool), 0)
