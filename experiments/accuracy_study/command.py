@@ -1,0 +1,62 @@
+"""The study's command line."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from pathlib import Path
+
+import xarray as xr
+from common import save_all, table
+
+from . import report
+from .limit import limit_table, limiting_absorption
+from .numbering import CASES, KINDS, numbers_of, quick_numbers
+from .study import study
+from .terms import term_table
+
+
+def compute(quick: bool = False, workers: int = 2) -> dict[str, xr.Dataset]:
+    """The study and the sequence of losses."""
+    numbers = quick_numbers() if quick else range(CASES)
+    return {"cases": study(numbers, workers), "limit": limiting_absorption(40 if quick else 450)}
+
+
+def arguments(text: str) -> argparse.Namespace:
+    """--quick for a few cases, --class and --count for those of one class, --case for single ones."""
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="a few cases: a check that everything runs")
+    parser.add_argument("--output", type=Path, default=Path("results"), help="folder for data and pictures")
+    parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument(
+        "--class", dest="kind", action="append", choices=[*KINDS, "all"], help="cases of this class alone"
+    )
+    parser.add_argument("--count", type=int, default=40, help="how many of each class")
+    parser.add_argument("--skip", type=int, default=0, help="how many of each class to pass over first")
+    parser.add_argument("--case", type=int, action="append", help="the case of this number alone")
+    parser.add_argument("--terms", action="store_true", help="whether every term of the error estimate is needed")
+    return parser.parse_args()
+
+
+def chosen(options: argparse.Namespace) -> list[int]:
+    """Numbers of the cases of the classes asked for, and those asked for by number."""
+    kinds = KINDS if "all" in (options.kind or []) else options.kind or []
+    some = (itertools.islice(numbers_of(kind), options.skip, options.skip + options.count) for kind in kinds)
+    return [*itertools.chain(*some), *(options.case or [])]
+
+
+def main(text: str) -> None:
+    """Run what is asked for and print it."""
+    options = arguments(text)
+    if options.terms:
+        print(term_table())
+        return
+    if options.kind or options.case:
+        ds = study(chosen(options), options.workers)
+        print(report.class_table(ds), report.reasons(ds), report.faults(ds), sep="\n\n")
+        return
+    data = compute(options.quick, options.workers)
+    cases, limit = data["cases"], data["limit"]
+    print(report.class_table(cases), report.reasons(cases), limit_table(limit), sep="\n\n", end="\n\n")
+    save_all("accuracy", options.output, data, report.plot(cases))
+    print(table(report.statements(cases, limit.apart.values)))

@@ -1,0 +1,121 @@
+"""Backward modes on the wrong side of the contour: counted by the argument principle, found by Newton's method."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import sys
+from collections.abc import Callable
+
+import numpy as np
+
+import beamprop as bp
+
+from .medium import Medium
+
+
+def turns(f: Callable[[np.ndarray], np.ndarray], corners: list[complex], finest: float) -> int:
+    """Turns of exp(f) along a closed polygon, bisected until every step is small."""
+    a = np.concatenate([p + (q - p) * np.arange(150) / 150 for p, q in itertools.pairwise([*corners, corners[0]])])
+    b = np.roll(a, -1)
+    fa, fb = f(a), f(b)
+    total = 0.0
+    for _ in range(40):
+        if a.size > 2500:
+            return sys.maxsize
+        m = (a + b) / 2
+        fm = f(m)
+        first, second = ((v + np.pi) % (2 * np.pi) - np.pi for v in ((fm - fa).imag, (fb - fm).imag))
+        calm = ((np.abs(first) < 0.6) & (np.abs(second) < 0.6) & (np.abs(first - second) < 0.3)) | (
+            np.abs(b - a) < finest
+        )
+        total += float((first + second)[calm].sum())
+        a, b, fa, fb = (
+            np.concatenate(v)
+            for v in ((a[~calm], m[~calm]), (m[~calm], b[~calm]), (fa[~calm], fm[~calm]), (fm[~calm], fb[~calm]))
+        )
+        if not a.size:
+            break
+    return round(total / (2 * np.pi))
+
+
+def media(m: Medium) -> list[tuple]:
+    """The layers that sound reaches, and the half-space behind them."""
+    layers = [layer for part, _ in m.segments for layer in part]
+    return layers if m.wall < math.inf else [*layers, m.after]
+
+
+def is_lossless(m: Medium) -> bool:
+    """No layer has loss, nor the half-space behind."""
+    return all(np.imag(v) == 0 for layer in media(m) for v in layer[:3] if np.isfinite(v))
+
+
+def is_lossy(m: Medium) -> bool:
+    """Every layer has loss: no mode lies on the axis, where rounding would choose its side."""
+    return all(any(np.imag(v) != 0 for v in layer[:3]) for layers, _ in m.segments for layer in layers)
+
+
+def has_negative(m: Medium) -> bool:
+    """Some layer, or the half-space behind, has a negative density or modulus."""
+    return any(np.real(v) < 0 for layer in media(m) for v in layer[:3])
+
+
+def wrong_side(
+    slab: bp.Slab, frequency: float, m: Medium, depth: float, corner: float, band: float
+) -> list[complex] | None:
+    """Backward modes above the path: their kx; None where they cannot be told.
+
+    Counted with a trace of loss where some layer has none, the less the thicker the slab. Where there are any, they are followed
+    from a scan.
+    """
+    if not has_negative(m):
+        return []
+    test = m if is_lossy(m) else Medium(slab, frequency, 1e-5 / max(1.0, 0.1 * m.k0 * m.thickness))
+    path = [
+        0.001 * corner * (1 + 0j),
+        band + 0j,
+        band - 1j * depth,
+        corner - 1j * depth,
+        0.001 * corner * (1 - 1j * depth / corner),
+    ]
+    count = -turns(test.log_t, path[::-1], 1e-10 * m.k0)  # clockwise outline; t has poles
+    if count == 0:
+        return []
+    if abs(count) > 60:
+        return None
+    return _find_wrong(m, test, depth, corner, band, abs(count))
+
+
+def _find_wrong(m: Medium, test: Medium, depth: float, corner: float, band: float, count: int) -> list[complex] | None:
+    """Newton's method on 1/t from the peaks of |t| along the axis, and from a grid below it."""
+    s = np.linspace(0.002 * m.k0, band, 6000)
+    seeds = [
+        s.astype(complex)[1:-1][(v[1:-1] > v[:-2]) & (v[1:-1] > v[2:])]
+        for v in (test.log_t(s + 0j).real, test.log_t(s - 0.5j * depth).real)
+    ]
+    found: list[tuple[complex, complex]] = []
+    for seed in np.concatenate([seeds[0], seeds[1] - 0.5j * depth]):
+        k = _newton(test, seed)
+        if k is None or not 0 < -k.imag < depth * min(1.0, k.real / corner) or not 0 < k.real < band:
+            continue
+        if all(abs(k - other) > 1e-7 * abs(k) for other, _ in found):
+            exact = _newton(m, k)
+            if exact is not None:
+                found.append((k, exact))
+    return [exact for _, exact in found] if len(found) == count else None
+
+
+def _newton(m: Medium, k: complex) -> complex | None:
+    for _ in range(60):
+        h = 1e-6 * abs(k)
+        f = m.log_t(np.array([k, k + h, k - h]))
+        d = np.exp(-(f - f[0]))
+        slope = (d[1] - d[2]) / (2 * h)
+        if not np.isfinite(slope) or slope == 0:
+            return None
+        step = -d[0] / slope
+        step *= min(1.0, 0.05 * abs(k) / abs(step))
+        k = complex(k + step)
+        if abs(step) < 1e-12 * abs(k):
+            return k
+    return None

@@ -1,0 +1,245 @@
+"""Is every term of the error estimate needed? Each is switched off in turn, and questions are sought that it alone decides.
+
+A term is a line of the package's source: the function that holds it is compiled again with the line changed. Most terms make the
+estimate larger, and are needed if without them it falls below a third of the true error somewhere; those that make it smaller
+are needed if without them a right field is warned of.
+"""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import itertools
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from types import ModuleType
+from typing import NamedTuple
+
+import numpy as np
+
+import beamprop as bp
+
+from .cases import Case
+from .contour import panels
+from .medium import Medium
+from .numbering import fan_of, make_case, map_of, numbers_of
+from .reference import Truth, field_sum
+from .slabs import C_AIR
+from .source import Source
+from .study import compared_with, error_of
+
+
+class Term(NamedTuple):
+    """One term: where it stands, what it reads without it, and the questions that may need it."""
+
+    name: str
+    module: str
+    function: str
+    line: str
+    without: str
+    candidates: tuple[object, ...]  #: numbers of cases, or questions built for it
+    larger: bool = True  #: whether the term makes the estimate larger
+
+
+def _built(slab: bp.Slab, beam: object, x: np.ndarray, z: list[float], rtol: float, frequency: float = 2500.0) -> Case:
+    return Case("built", "built", slab, beam, frequency, np.asarray(x, float), np.asarray(z, float), rtol)
+
+
+#: The kind of built questions whose spectrum ends in a step: no contour but the real axis serves them.
+STEPPED = "stepped"
+
+
+def on_the_axis(case: Case) -> Truth:
+    """The truth of a question without guided modes, by panels on the real axis, graded to its branch points and ends."""
+    m = Medium(case.slab, case.frequency)
+    source = Source(case.beam, m.k0)
+    end, fields = source.band(1e-17), []
+    for count in (300, 450):
+        steps = end * np.geomspace(1e-13, 1, 200)
+        near = [b + side * steps for b in m.branches() for side in (-1, 1)]
+        edges = np.concatenate([np.linspace(0, end, count), *near])
+        k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
+        x = case.x - case.beam.centre
+        fields.append(field_sum(source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, x))
+    scale = np.abs(fields[1]).max(axis=1)
+    error = np.abs(fields[1] - fields[0]).max(axis=1) / scale
+    return Truth(fields[1], scale, error, np.zeros(scale.size, bool), 0)
+
+
+def _coarse_profiles() -> Iterator[Case]:
+    """White noise sampled every third of a wavelength to every wavelength: its spectrum ends in a step."""
+    for seed, spacing in enumerate((0.2, 0.33, 0.45, 0.8)):
+        rng = np.random.default_rng(seed)
+        x = np.arange(40) * spacing * C_AIR / 2500
+        beam = bp.Profile(x - x.mean(), rng.normal(size=40) + 1j * rng.normal(size=40), -0.02)
+        case = _built(bp.Slab.uniform(bp.AIR, 0.1), beam, np.linspace(beam.x[0], beam.x[-1], 37), [0.0], 1e-6)
+        yield case._replace(kind=STEPPED)
+
+
+def _edges_of_bands() -> Iterator[Case]:
+    """Narrow slits a little in front of a slab that lets through more than the way to it leaves: the band is not known before."""
+    air, light = bp.Layer(bp.AIR, 0.004), bp.Layer(bp.Fluid(-1.25 * 0.97, bp.AIR.bulk_modulus), 0.004)
+    for gap, rtol in itertools.product((0.001, 0.003, 0.01), (1e-3, 1e-5, 1e-8)):
+        for layers in ([light], [air, light], [bp.Layer(bp.Fluid(0.02, bp.AIR.bulk_modulus), 0.004)]):
+            beam = bp.Slits(0.005, 0.02, 2, -gap)
+            yield _built(bp.Slab(layers, 1), beam, np.linspace(-0.05, 0.05, 21), [0.0, 0.002, 0.008], rtol)
+
+
+FAR = _built(
+    bp.Slab.uniform(bp.AIR, 0.1), bp.GaussianBeam(0.7, 60.0, z0=-20.0), np.linspace(-0.1, 0.1, 11), [0.05, 0.1], 1e-9
+)
+BLACK = _built(
+    bp.Slab(bp.lmmd_cell(0.05 + 0.5j, 0.25), 60_000),
+    bp.GaussianBeam(0.3),
+    np.linspace(-0.5, 0.5, 11),
+    [0.0, 900.0],
+    1e-8,
+)
+
+
+def _some(kind: str, count: int = 12) -> tuple[int, ...]:
+    return tuple(itertools.islice(numbers_of(kind), count))
+
+
+#: Every term of the estimate. Where the package's line changes, it changes here.
+TERMS = [
+    Term(
+        "difference of two contours", "judge", "_difference",
+        "np.max(np.abs(a - b), axis=2) / scale", "0 * np.max(np.abs(a - b), axis=2) / scale", tuple(range(15)),
+    ),
+    Term(
+        "what lies beyond the band", "judge", "_difference",
+        "_beyond(two, right2, left2)", "0 * _beyond(two, right2, left2)",
+        (*_edges_of_bands(), *_some("slits before the lossless slab", 10), *range(0, 400, 3)),
+    ),
+    Term(
+        "a spectrum that is cut off", "judge", "_difference", "error += cut / scale", "error += 0 * cut / scale",
+        tuple(_coarse_profiles()),
+    ),
+    Term(
+        "mixing of angles", "judge", "_difference", "error += fan.tolerance + 3 *", "error += 0 * fan.tolerance + 0 *",
+        tuple(range(0, 700, 7)),
+    ),
+    Term(
+        "planes made of a few", "propagate", "_fill_from_few", "return error", "return 0 * error", tuple(range(1, 600, 5)),
+    ),
+    Term(
+        "rounding of long phases", "judge", "_difference",
+        "return worst + spectral.EPS * (4 + checks.k0 * way)", "return worst + 0 * way", (*_some("very wide beams", 20), FAR),
+    ),
+    Term(
+        "second response moved in its last bits", "judge", "sampled", "SHIFT if moved else 0.0", "0.0",
+        (*_some("sharp resonances", 20), *_some("LMMD, 1 or 100 000 periods", 20)),
+    ),
+    Term(
+        "brightness outside the window", "judge", "_difference",
+        "largest = np.maximum(largest, checks.bright)", "largest = largest * 1.0", (FAR,), False,
+    ),
+    Term(
+        "planes too dark to be seen", "judge", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (BLACK,), False,
+    ),
+]  # fmt: skip
+
+
+@contextmanager
+def switched_off(term: Term) -> Iterator[None]:
+    """The package without a term."""
+    module: ModuleType = importlib.import_module(f"beamprop.{term.module}")
+    kept = getattr(module, term.function)
+    source = inspect.getsource(kept)
+    if source.count(term.line) != 1:
+        raise LookupError(
+            f"{term.module}.{term.function}: expected one line {term.line!r}, found {source.count(term.line)}"
+        )
+    changed: dict[str, object] = {}
+    exec(compile(source.replace(term.line, term.without), module.__file__ or "", "exec"), vars(module), changed)
+    setattr(module, term.function, changed[term.function])
+    try:
+        yield
+    finally:
+        setattr(module, term.function, kept)
+
+
+class Found(NamedTuple):
+    """What a question says of a term."""
+
+    number: object
+    error: float
+    estimate: float
+    without: float  #: the estimate without the term
+    needed: bool
+
+
+def _estimate(case: Case, number: int | None) -> tuple[np.ndarray, float] | None:
+    """The package's p at the case's own positions and its estimate; None where it refuses."""
+    angles = None if number is None else fan_of(number, case)
+    x, z = (case.x, case.z) if number is None else map_of(number, case)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            ds = bp.field(case.slab, case.beam, case.frequency, x, z, angle=angles, rtol=case.rtol)
+        except ValueError:
+            return None
+    ds = ds if angles is None else ds.isel(angle=int(np.flatnonzero(angles == case.beam.angle)[0]))
+    p = ds.p.values.reshape(z.size, x.size)[np.searchsorted(z, case.z)][:, np.searchsorted(x, case.x)]
+    return p, float(ds.error_estimate)
+
+
+def tried(term: Term, candidate: object) -> Found | None:
+    """One question with and without a term; None where there is no truth or no answer."""
+    number = candidate if isinstance(candidate, int) else None
+    case = make_case(number) if number is not None else candidate
+    assert isinstance(case, Case)
+    whole = _estimate(case, number)
+    with switched_off(term):
+        without = _estimate(case, number)
+    if whole is None or without is None or (term.larger and without[1] > 0.9 * whole[1]):
+        return None
+    truth, some = (
+        (on_the_axis(case), np.arange(case.x.size))
+        if case.kind == STEPPED
+        else compared_with(case, max(without[1], 1e-16))
+    )
+    if isinstance(truth, str):
+        return None
+    error, unknown = error_of(without[0][:, some], truth)
+    if term.larger:
+        needed = error - unknown > 3 * max(without[1], unknown)
+    else:
+        needed = error + unknown < case.rtol / 3 and not without[1] <= case.rtol
+    label = number if number is not None else "built"
+    return Found(label, error, whole[1], without[1], needed)
+
+
+def decided(term: Term, candidates: Iterable[object] | None = None) -> Found | None:
+    """The first question that needs a term, or the one that came nearest; None where no question was changed by it."""
+    nearest: Found | None = None
+    for candidate in term.candidates if candidates is None else candidates:
+        found = tried(term, candidate)
+        if found is None:
+            continue
+        if found.needed:
+            return found
+        if nearest is None or found.error / max(found.without, 1e-17) > nearest.error / max(nearest.without, 1e-17):
+            nearest = found
+    return nearest
+
+
+def term_table() -> str:
+    """Every term, and the question that needs it."""
+    lines = ["| term | case | true error | estimate | without it | needed |", "|---" * 6 + "|"]
+    for term in TERMS:
+        try:
+            found = decided(term)
+        except LookupError as gone:
+            lines.append(f"| {term.name} | | | | | the package has no such line: {gone} |")
+            continue
+        if found is None:
+            lines.append(f"| {term.name} | none changed | | | | NO |")
+            continue
+        says = "yes" if found.needed else "not shown"
+        lines.append(
+            f"| {term.name} | {found.number} | {found.error:.1e} | {found.estimate:.1e} | {found.without:.1e} | {says} |"
+        )
+    return "\n".join(lines)
