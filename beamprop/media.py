@@ -187,6 +187,12 @@ class Membrane:
         return out
 
 
+def _checked_layer(layer: Any) -> Layer | Membrane:
+    if not isinstance(layer, Layer | Membrane):
+        raise validate.refuse("layers", "Layer objects", layer)
+    return layer
+
+
 @dataclass(frozen=True)
 class Cell:
     """One period: layers from the near side to the far side."""
@@ -197,10 +203,7 @@ class Cell:
         layers = (self.layers,) if isinstance(self.layers, Layer) else self.layers
         if not isinstance(layers, Iterable):
             raise validate.refuse("layers", "a sequence of Layer", layers)
-        layers = tuple(layers)
-        for layer in layers:
-            if not isinstance(layer, Layer | Membrane):
-                raise validate.refuse("layers", "Layer objects", layer)
+        layers = tuple(_checked_layer(layer) for layer in layers)
         if not any(isinstance(layer, Layer) for layer in layers):
             raise ValueError("layers: expected at least one Layer, got none")
         object.__setattr__(self, "layers", layers)

@@ -6,7 +6,7 @@
 
 Every case is made from its number. An outcome is good if it is an answer without NaN or infinity (or with a warning, or where
 they are documented), or a ValueError that names an argument. Bad are: other errors, warnings of NumPy that leak, values that are not
-finite and not announced, more than SECONDS, more than MEMORY bytes, and the end of the process.
+finite and not announced, more than SECONDS of the processor, more than MEMORY bytes, and the end of the process.
 """
 
 from __future__ import annotations
@@ -112,14 +112,16 @@ def ask_all(kind: str, first: int, last: int) -> Iterator[dict[str, Any]]:
     import matplotlib.pyplot as plt
     from fuzz_cases import CASES
 
-    signal.signal(signal.SIGALRM, _out_of_time)
+    signal.signal(signal.SIGPROF, _out_of_time)
     for number in range(first, last):
         yield {"asked": number}
         for name, ask in CASES[kind](number):
-            signal.setitimer(signal.ITIMER_REAL, SECONDS)
-            signal.setitimer(signal.ITIMER_PROF, 3 * SECONDS)  # ends the process: for what Python cannot interrupt
+            signal.setitimer(signal.ITIMER_PROF, SECONDS)  # of the processor: others may be busy on the machine
+            # these end the process: for what Python cannot interrupt, and for what waits without end
+            signal.setitimer(signal.ITIMER_VIRTUAL, 3 * SECONDS)
+            signal.setitimer(signal.ITIMER_REAL, 60 * SECONDS)
             what, detail = outcome(name, ask)
-            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.setitimer(signal.ITIMER_PROF, 0)
             yield {"case": f"{kind}:{number}", "name": name, "outcome": what, "detail": detail[:200]}
             if name == "media made" and what not in ("answer", "answer with a warning"):
                 break

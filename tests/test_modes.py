@@ -379,7 +379,9 @@ def test_crossings_alone_and_together():
     slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
     s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
     face = np.full(3, slab.thickness)
-    route = sections.Route(s, sections.far_face(s, 0.0), lambda one: transfers.through(one, 0.0), face, face, True)
+    route = sections.Route(
+        s, lambda some, _: sections.far_face(some, 0.0), lambda one: transfers.through(one, 0.0), face, face, True
+    )
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = at_frequency(s, i)

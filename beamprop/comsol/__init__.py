@@ -110,7 +110,7 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     missing = [n for n in ("x", "z") if n not in ds.variables or ds[n].dims != ("node",)]
     if missing:
         raise ValueError(f"ds: expected coordinates x and z of the nodes, got none for {', '.join(missing)}")
-    nodes = [validate.positions(ds[n].values, f"{n} of the nodes") for n in ("x", "z")]
+    nodes = [validate.positions(ds[n].values, "ds") for n in ("x", "z")]
     from scipy.interpolate import LinearNDInterpolator
     from scipy.spatial import Delaunay, QhullError
 
