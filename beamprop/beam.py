@@ -171,8 +171,7 @@ class GaussianBeam(_Tilted):
             shift = np.exp(-1j * kx * self.x0) if self.x0 else 1.0
         if self.form == "launch":
             return super().spectrum(kx, k0) * shift
-        kx = kx.real
-        inside = np.abs(kx) < k0
+        inside = np.abs(kx.real) < k0
         kz = np.sqrt(np.where(inside, (k0 - kx) * (k0 + kx), 1.0))
         sine, cosine = float(sin_degrees(self.angle)), math.cos(math.radians(self.angle))
         waist = self._envelope_spectrum(kx * cosine - kz * sine)

@@ -157,7 +157,8 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
-    first_node = math.pi / spectral.plan_bent(reach, rtol).window
+    # Gauss panels over propagating waves are wider than the step of a trapezoid rule
+    first_node = math.pi / spectral.plan_bent(reach, rtol).window if fan.beam.entire else 0.2 * reach.branch
     near = _around_origin(np.array([first_node]))
     h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])

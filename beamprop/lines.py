@@ -96,7 +96,7 @@ def choose_line(
 
 def _chosen(s: Scene, checks: Checks, reach: Reach, seen: judge.Survey, x: np.ndarray, rtol: float) -> Solution:
     if not checks.fan.beam.entire:
-        return _propagating_solution(s, checks, reach, rtol)
+        return _propagating_solution(s, checks, reach, rtol, seen)
     search = _Search(s, checks, reach, rtol, seen)
     straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
@@ -270,12 +270,30 @@ def fft_is_cheaper(n: int, modes: float, points: int) -> bool:
     return 5.5 * n * math.log2(n) < modes * points
 
 
-def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float) -> Solution:
-    """Gauss nodes over the propagating waves, doubled until two numbers of nodes agree."""
+#: How far the contour of propagating waves dips below the axis, over k0.
+DEEPEST_DIP = 0.3
+
+
+def _dip(s: Scene, reach: Reach, rtol: float, sharp: float) -> float:
+    """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
+    growth = min(spectral.DEEPEST, max(0.0, math.log(rtol / (100 * spectral.EPS))))
+    dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
+    if not math.isfinite(sharp):
+        return 0.0
+    found = misplaced.misplaced(s, 1.05 * dip * reach.k0, (1 - 1e-6) * reach.k0, 1e-6 * reach.k0)
+    return dip if not found.poles else 0.0
+
+
+def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float, seen: judge.Survey) -> Solution:
+    """Gauss nodes over the propagating waves, doubled until two numbers of nodes, on contours that dip differently, agree."""
     count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
+    dip = _dip(s, reach, rtol, seen.sharp) if checks.guided else 0.0
     for _ in range(6):
         memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
-        lines = [spectral.propagating_line(s.k0, real_branches(s), c) for c in (count, int(1.4 * count))]
+        lines = [
+            spectral.propagating_line(s.k0, real_branches(s), int(more * count), share * dip, share * seen.sharp)
+            for more, share in ((1.0, 0.7), (1.4, 1.0))
+        ]
         one, two = (judge.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
         error, _ = judge.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:

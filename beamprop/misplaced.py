@@ -248,13 +248,17 @@ def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex
 
 #: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
 REMEDIES = 10.0 ** np.arange(-6, 0)
+#: And shares of a contour's depth that are tried with them.
+SHALLOWER = (1.0, 0.1, 0.01)
 
 
 def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
     """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
     for loss in REMEDIES:
-        if misplaced(with_loss(s, float(loss)), depth, band, start) is not UNCLEAR:
-            return float(loss)
+        lossy = with_loss(s, float(loss))
+        for share in SHALLOWER:
+            if misplaced(lossy, share * depth, band, start) is not UNCLEAR:
+                return float(loss)
     return None
 
 

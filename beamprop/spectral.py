@@ -254,25 +254,46 @@ def periodic_line(period: float, band: float) -> Line:
     return Line(k, weight, ds, 0)
 
 
-def propagating_line(k0: float, breaks: list[float], count: int) -> Line:
-    """About `count` Gauss nodes over |kx| < k0, for sources of propagating waves only.
+def propagating_line(
+    k0: float, breaks: list[float], count: int, dip: float = 0.0, sharp: float = math.inf
+) -> Line:
+    """About `count` Gauss nodes from 0 to k0, for sources of propagating waves only.
 
-    The substitution kx = k0 sin(alpha) takes out the square roots at k0; `breaks` are other branch points inside, where
-    intervals meet and alpha goes as u^2, which takes out a root there too; u is divided into panels of 24 nodes. Weights are
-    k0 cos(alpha) of the rounded kx, for spectra with 1/kz in them.
+    The substitution kx = k0 sin(alpha) takes out the square roots at k0, and a spectrum with 1/kz in it is an entire function of
+    alpha: between 0 and k0 the contour may dip below the axis, ``alpha = t - i dip cos(t) tanh(t/2 dip)``, away from poles of sharp
+    resonances; weights are complex then. `breaks` are other branch points inside, where intervals meet and t goes as u^2, which takes out a root there too; u is divided
+    into panels of 24 nodes, the first one graded towards 0 where something is `sharp` at that distance from it. Weights are k0
+    cos(alpha) of the rounded kx.
     """
     edges = np.arcsin(np.unique(np.clip([0.0, *(b / k0 for b in breaks if 0 < b < k0), 1.0], 0, 1)))
     g, v = np.polynomial.legendre.leggauss(24)
-    panels = max(2, math.ceil(count / 24))
-    u = ((np.arange(panels)[:, None] + (g + 1) / 2) / panels).ravel()
-    w = np.tile(v / 2 / panels, panels)
+    even = np.linspace(0, 1, max(2, math.ceil(count / 24)) + 1)
     nodes, weights = [], []
     for lo, hi in itertools.pairwise(edges):
+        stops = _towards_origin(even, min(sharp / k0, dip or math.inf) / (hi - lo)) if lo == 0 else even
+        u = (stops[:-1, None] + np.diff(stops)[:, None] * (g + 1) / 2).ravel()
+        w = (np.diff(stops)[:, None] * v / 2).ravel()
         smooth, slope = _slow_ends(u, lo > 0, hi < edges[-1])
-        k = k0 * np.sin(lo + (hi - lo) * smooth)
+        t = lo + (hi - lo) * smooth
+        alpha, turn = _dipped(t, dip) if dip else (t, 1.0)
+        k = k0 * np.sin(alpha)
         nodes.append(k)
-        weights.append(np.sqrt((k0 - k) * (k0 + k)) * (hi - lo) * slope * w / (2 * np.pi))
+        weights.append(np.sqrt((k0 - k) * (k0 + k)) * turn * (hi - lo) * slope * w / (2 * np.pi))
     return Line(np.concatenate(nodes).astype(complex), np.concatenate(weights))
+
+
+def _dipped(t: np.ndarray, dip: float) -> tuple[np.ndarray, np.ndarray]:
+    """alpha on the contour that dips below the axis, and dalpha/dt: at half the slope from 0, and back at the end."""
+    rise = np.tanh(t / (2 * dip))
+    return t - 1j * dip * np.cos(t) * rise, 1 - 1j * (np.cos(t) * (1 - rise**2) / 2 - dip * np.sin(t) * rise)
+
+
+def _towards_origin(stops: np.ndarray, sharp: float) -> np.ndarray:
+    """Stops of panels, those in the first one halved towards 0 down to a quarter of `sharp`."""
+    if not sharp < 2 * stops[1]:
+        return stops
+    halvings = math.ceil(math.log2(4 * stops[1] / sharp))
+    return np.concatenate([[0.0], stops[1] * 2.0 ** -np.arange(halvings, -1, -1), stops[2:]])
 
 
 def _slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
