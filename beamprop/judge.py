@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import spectral
+from . import origin, spectral
 from .beam import Beam
 from .fan import Fan
 from .memory import check_contour
@@ -125,7 +125,7 @@ def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.n
     """The largest |S h| of a beam's strong plane waves on each plane, (Z,)."""
     k = _strong(beam, k0)
     # even in kx; through a layer of density 0 passes kx = 0 alone
-    h = np.abs(transfer(np.maximum(np.abs(k), NEAREST * k0) + 0j, z))
+    h = np.abs(transfer(np.maximum(np.abs(k), origin.NEAREST * k0) + 0j, z))
     return np.max(np.nan_to_num(h * np.abs(beam.spectrum(k, k0))), axis=1)
 
 
@@ -159,13 +159,13 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     ends = z[[0, -1]] if z.size > 1 else z
     # Gauss panels over propagating waves are wider than the step of a trapezoid rule
     first_node = math.pi / spectral.plan_bent(reach, rtol).window if fan.beam.entire else 0.2 * reach.branch
-    near = _around_origin(np.array([first_node]))
+    near = origin.around(np.array([first_node]))
     h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
     allowed = max(0.01 * rtol, 30 * max(noise, spectral.EPS))
     sharp = math.inf
-    if not _is_calm(h[:, 2 * k.size : 2 * k.size + near.size], 1, allowed)[0]:
-        sharp = _nearest_singularity(transfer, ends, first_node, s.k0, allowed)
+    if not np.all(origin.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
+        sharp = origin.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
     middle, half = _landing(fan, h[:, 2 * k.size + near.size :], some.size, step)
     bright = np.zeros((asked.size, z.size))
     if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
@@ -174,40 +174,6 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
         bright = _interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
     return Survey(noise, bright, sharp)
-
-
-#: Points on the half circle around kx = 0 over which a response is averaged.
-AROUND = 16
-#: Singularities nearer to kx = 0 than this, over k0, are below the rounding of kx^2 and w^2.
-NEAREST = 1e-9
-
-
-def _around_origin(radii: np.ndarray) -> np.ndarray:
-    """A point next to kx = 0, and `AROUND` points on the upper half circle of each radius."""
-    turn = np.exp(1j * np.pi * (np.arange(AROUND) + 0.5) / AROUND)
-    return np.concatenate([[1e-9 * radii.min()], np.multiply.outer(radii, turn).ravel()])
-
-
-def _is_calm(h: np.ndarray, radii: int, allowed: float) -> np.ndarray:
-    """Whether nothing singular lies inside circles around kx = 0, (radii,), from the response at `_around_origin`, (Z, .).
-
-    The response is an even function of kx, so that kx^2 goes once around 0 on the half circle: the mean over it is the value at
-    0 where the response is analytic inside (Cauchy), and lacks the share of poles inside it otherwise.
-    """
-    at_0, around = h[:, :1], h[:, 1:].reshape(h.shape[0], radii, AROUND)
-    size = np.maximum(np.abs(at_0), np.max(np.abs(around), axis=2))
-    with np.errstate(invalid="ignore", over="ignore"):
-        apart = np.abs(around.mean(axis=2) - at_0) / np.where(size > 0, size, 1.0)
-    return np.max(np.nan_to_num(apart, nan=np.inf), axis=0) <= allowed
-
-
-def _nearest_singularity(transfer: Transfer, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
-    """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular."""
-    count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
-    radii = radius * 4.0 ** -np.arange(count)
-    calm = _is_calm(transfer(_around_origin(radii), z), count, allowed)
-    disturbed = np.flatnonzero(~calm)
-    return float(radii[min(disturbed[-1] + 1, count - 1)]) if disturbed.size else math.inf
 
 
 def wide_enough(transfer: Transfer, z: np.ndarray, low: float, band: float) -> bool:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import fft, lines, misplaced, propagate, spectral, transfers
+from . import fft, lines, misplaced, origin, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
@@ -171,6 +171,8 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
 
 #: The most plane waves of all frequencies that are worked on at a time, and of one of them.
 MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
+#: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
+ROUND = 0.25
 
 
 def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
@@ -193,6 +195,8 @@ def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Meas
         out = out._replace(centroid=out.centroid + beam.centre)
         if route.guided:
             good &= ~_backward(s, plan)
+            near = plane(origin.around(np.asarray(plan.delta)[:, None] * ROUND))
+            good &= origin.is_calm(near, max(0.01 * rtol, 1e-12))[:, 0]
     return out, good
 
 

@@ -254,9 +254,7 @@ def periodic_line(period: float, band: float) -> Line:
     return Line(k, weight, ds, 0)
 
 
-def propagating_line(
-    k0: float, breaks: list[float], count: int, dip: float = 0.0, sharp: float = math.inf
-) -> Line:
+def propagating_line(k0: float, breaks: list[float], count: int, dip: float = 0.0, sharp: float = math.inf) -> Line:
     """About `count` Gauss nodes from 0 to k0, for sources of propagating waves only.
 
     The substitution kx = k0 sin(alpha) takes out the square roots at k0, and a spectrum with 1/kz in it is an entire function of

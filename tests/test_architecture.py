@@ -35,6 +35,7 @@ ORDER = [
     "misplaced",
     "fan",
     "transfers",
+    "origin",
     "judge",
     "planes",
     "lines",
