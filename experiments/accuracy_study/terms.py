@@ -98,6 +98,16 @@ BLACK = _built(
 )
 
 
+#: The plane of a perfect wall among others: p = 0 there.
+WALL = _built(
+    bp.Slab.uniform(bp.Fluid(0, bp.AIR.bulk_modulus), 0.1),
+    bp.GaussianBeam(0.5, z0=-0.3),
+    np.linspace(-0.4, 0.4, 21),
+    [-0.2, -0.1, 0.0],
+    1e-8,
+)
+
+
 def _some(kind: str, count: int = 12) -> tuple[int, ...]:
     return tuple(itertools.islice(numbers_of(kind), count))
 
@@ -138,6 +148,9 @@ TERMS = [
     ),
     Term(
         "planes too dark to be seen", "judge", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (BLACK,), False,
+    ),
+    Term(
+        "planes dark to rounding", "judge", "_difference", "(largest > DARK) & ~checks.dark", "(largest > DARK)", (WALL,), False,
     ),
 ]  # fmt: skip
 
