@@ -118,7 +118,7 @@ def with_dark_planes(checks: Checks) -> Checks:
     for angle in fan.asked[some]:
         here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
         dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
-    return checks._replace(dark=_interpolated(fan.asked, fan.asked[some], np.array(dark)))
+    return checks._replace(dark=interpolated(fan.asked, fan.asked[some], np.array(dark)))
 
 
 def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
@@ -172,7 +172,7 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
         if z.size > 1:
             middle, half = _landing(fan, transfer(beside, z), some.size, step)
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
-        bright = _interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
+        bright = interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
     return Survey(noise, bright, sharp)
 
 
@@ -229,7 +229,7 @@ def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: n
     return np.nan_to_num(found.min(axis=0), nan=0.0, posinf=0.0)
 
 
-def _interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values (P, ...) at `known`, increasing, brought to `at`: the less of both neighbours'."""
     above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
     below = np.where(known[above] == at, above, np.maximum(above - 1, 0))
@@ -253,7 +253,7 @@ JUDGED = 64
 
 
 def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
-    """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what is the band's edge."""
+    """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what lies beyond the ends of both."""
     asked = checks.fan.asked
     if checks.fan.mix is None or asked.size <= JUDGED:
         return _difference(checks, one, two)
@@ -261,7 +261,7 @@ def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, 
     dark = None if checks.dark is None else checks.dark[some]
     part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=dark)
     error, edge = _difference(part, one, two)
-    return -_interpolated(asked, asked[some], -error), edge
+    return -interpolated(asked, asked[some], -error), edge
 
 
 def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
@@ -282,7 +282,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     largest = np.maximum(largest, checks.bright)
     seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)
-    edge = np.zeros(largest.shape)
+    edge = first_edge = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):
         error = np.max(np.abs(a - b), axis=2) / scale
         if fan.beam.entire:
@@ -291,14 +291,16 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
                 _beyond(two, right2, left2),
                 _cut_off(checks.k0, fan, one, right1, left1, float(np.max(np.abs(x)))),
             )
-            edge, cut = (v if mix is None else mix @ v for v in (edge, cut))
+            first_edge = _beyond(one, right1, left1)
+            edge, cut, first_edge = (v if mix is None else mix @ v for v in (edge, cut, first_edge))
             error += cut / scale
         if fan.mix is not None:
             error += fan.tolerance + 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
     # both lines round the phases k x and kz z alike
     way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
-    return worst + spectral.EPS * (4 + checks.k0 * way), float(np.max(np.where(seen, edge / scale, 0.0)))
+    ends = np.max(np.where(seen, np.maximum(edge, first_edge) / scale, 0.0))
+    return worst + spectral.EPS * (4 + checks.k0 * way), float(ends)
 
 
 def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import judge, memory, misplaced, spectral
+from . import elsewhere, judge, memory, misplaced, spectral
 from .fan import Fan
 from .judge import Checks
 from .scene import Scene, is_lossless, last_branch, nearest_branch, real_branches
@@ -206,6 +206,7 @@ def _bent_solution(search: _Search) -> Solution:
         error, edge = judge.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
             checks = judge.with_dark_planes(checks)
+            checks = elsewhere.with_wider_look(s, checks, search.reach, plan, found)
             error, edge = judge.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():

@@ -38,6 +38,7 @@ ORDER = [
     "origin",
     "judge",
     "planes",
+    "elsewhere",
     "lines",
     "propagate",
     "sections",
