@@ -189,7 +189,7 @@ def _bent_solution(search: _Search) -> Solution:
     s, checks, rtol = search.scene, search.checks, search.rtol
     best: Solution | None = None
     shrinks = 2 if is_lossless(s) else 6  # on the axis itself their number does not fall
-    in_vain = 0
+    in_vain, looked = 0, False
     for _ in range(ATTEMPTS):
         if search.too_wide():
             break
@@ -206,7 +206,9 @@ def _bent_solution(search: _Search) -> Solution:
         error, edge = judge.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
             checks = judge.with_dark_planes(checks)
-            checks = elsewhere.with_wider_look(s, checks, search.reach, plan, found)
+            error, edge = judge.difference(checks, one, two)
+        if error.max() > rtol and best is not None and not looked:  # a wider window alone did not do
+            looked, checks = True, elsewhere.with_wider_look(s, checks, search.reach, plan, found)
             error, edge = judge.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
