@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import elsewhere, judge, memory, misplaced, spectral
+from . import elsewhere, judge, memory, misplaced, spectral, stretches
 from .fan import Fan
 from .judge import Checks
-from .scene import Scene, is_lossless, last_branch, nearest_branch, real_branches
+from .scene import Scene, backward_branch, is_lossless, last_branch, nearest_branch, real_branches
 from .spectral import BentPlan, Line, Reach
 from .transfers import Transfer
 
@@ -98,6 +98,8 @@ def _chosen(s: Scene, checks: Checks, reach: Reach, seen: judge.Survey, x: np.nd
     if not checks.fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol, seen)
     search = _Search(s, checks, reach, rtol, seen)
+    if backward_branch(s) is not None and checks.guided:
+        return _solution_in_stretches(search)
     straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
         return straight
@@ -134,20 +136,23 @@ class _Search:
         """Whether the present plan takes too many plane waves."""
         return self.plan.other().nodes > MOST_MODES
 
+    @property
+    def start(self) -> float:
+        """Re kx from which poles are searched for."""
+        return min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
+
     def look(self) -> misplaced.MisplacedPoles:
         """Poles on the wrong side of the contour of the present plan, searched for as far as its band goes."""
         if self.plan.band > self.searched:
             self.searched = 1.15 * self.plan.band
-            start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
-            self.found = misplaced.misplaced(self.scene, 1.05 * self.plan.depth, self.searched, start)
+            self.found = misplaced.misplaced(self.scene, 1.05 * self.plan.depth, self.searched, self.start)
             self._cross()
         return self.found
 
     def refusal(self) -> str:
         """Why poles cannot be put right, and what would do."""
-        start = min(1e-3 * self.scene.k0, 0.1 * min(self.sharp, self.reach.branch))
         plan = self._planned(math.inf)
-        loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, start)
+        loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, self.start)
         remedy = (
             ""
             if loss is None
@@ -224,13 +229,74 @@ def _bent_solution(search: _Search) -> Solution:
             more = math.log(min(float(error.max()), 1e6) / (0.3 * rtol)) / plan.depth
             search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
     if best is None and search.found is misplaced.UNCLEAR:
+        if stretches.is_periodic(s):
+            return _solution_in_stretches(search)
         raise ValueError(search.refusal())
     if best is None:
-        raise ValueError(
-            f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "
-            "edge does not end on its own launch plane: ask for z a little behind z0)"
-        )
+        raise ValueError(_too_many(rtol))
     return best
+
+
+def _too_many(rtol: float) -> str:
+    return (
+        f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "
+        "edge does not end on its own launch plane: ask for z a little behind z0)"
+    )
+
+
+#: How often a contour in stretches is planned again: each has shorter panels and another depth, or a wider band.
+TRIES_IN_STRETCHES = 7
+
+
+def _solution_in_stretches(search: _Search) -> Solution:
+    """Shorten the panels, or widen the band where its edge is what is missing, until two contours in stretches agree."""
+    s, checks, rtol = search.scene, search.checks, search.rtol
+    plan = stretches.plan_stretches(search.reach, search.reach.path - s.thickness, rtol, search.noise)
+    best, why = None, _too_many(rtol)
+    for _ in range(TRIES_IN_STRETCHES):
+        pair = _pair_in_stretches(search, plan)
+        if pair is None:
+            plan, why = plan._replace(depth=plan.depth / 3), search.refusal()
+            continue
+        if max(line.k.size for line in pair) > MOST_MODES:
+            break
+        one, two = (judge.sampled(checks, line, moved) for line, moved in zip(pair, (False, True), strict=True))
+        error, edge = judge.difference(checks, one, two)
+        if error.max() > rtol and checks.dark is None:
+            checks = judge.with_dark_planes(checks)
+            error, edge = judge.difference(checks, one, two)
+        if best is None or error.max() < best.error.max():
+            best = Solution(pair[0], error, circles=True, amplitudes=one.amplitudes)
+        if error.max() <= rtol:
+            break
+        wider = 1.5 if edge > 0.3 * rtol else 1.0
+        plan = plan._replace(band=plan.band * wider)
+        if wider == 1.0:
+            plan = plan._replace(depth=plan.depth * 0.7, height=plan.height * 0.75, finer=plan.finer * 1.4)
+    if best is None:
+        raise ValueError(why)
+    return best
+
+
+def _pair_in_stretches(search: _Search, plan: stretches.Plan) -> tuple[Line, Line] | None:
+    """A contour in stretches and another to judge it by; None where poles on their wrong side cannot be told apart."""
+    s, reach = search.scene, search.reach
+    found, parts = misplaced.NONE, [stretches.Stretch(0.0, math.inf, -1)]
+    if search.found is misplaced.UNCLEAR:
+        parts = stretches.sides_of_bands(s, plan.other().band)
+    else:
+        found = misplaced.misplaced(s, 1.05 * plan.depth, plan.other().band, search.start)
+        if found is misplaced.UNCLEAR:
+            return None
+    parts = stretches.met_at_branches(s, parts)
+    across, along = max(reach.extent, reach.source), reach.path - s.thickness
+    one, two = (
+        misplaced.with_residues(
+            s, stretches.stretched_line(s, parts, p, across, along), found, across, reach.path, bool(i)
+        )
+        for i, p in enumerate((plan, plan.other()))
+    )
+    return one, two
 
 
 #: What share of its window a straight line is tried with first, and how much more of everything it is given then.

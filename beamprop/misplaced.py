@@ -8,6 +8,7 @@ the contour crosses the axis between the two kinds instead.
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -19,10 +20,12 @@ from .roots import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, win
 from .scene import (
     Scene,
     at_frequency,
+    backward_branch,
     is_lossless,
     last_branch,
     may_guide_backward,
     nearest_branch,
+    on_the_right,
     real_branches,
     up_to_wall,
     with_loss,
@@ -78,7 +81,7 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
         found = _with_circles(s, _below(s, depth, band, start))
     except TooManyModes:
         found = UNCLEAR
-    if found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES:
+    if backward_branch(s) is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
         return found
     try:
         return _with_crossing(s, depth, band, start) or found
@@ -89,13 +92,27 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
 def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
     """Modes below the axis, or on it beyond the branch points, and above a contour at `depth` below it."""
     edge, above = last_branch(s) * (1 + BESIDE), ON_AXIS * s.k0
+    cut = backward_branch(s)
     if is_lossless(s):
         above = depth
-    elif not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
+    if cut is not None:
+        return _beside_cut(s, cut.real, (start, band, depth), (edge, above))
+    if not is_lossless(s) and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
         return []
     found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
     if band > edge:
         found += _few_modes(s, Box(edge, band, -depth, above))
+    return found
+
+
+def _beside_cut(s: Scene, cut: float, contour: tuple[float, float, float], lifted: tuple[float, float]) -> list[Mode]:
+    """The same where a branch cut leads from Re kx = `cut` downward: boxes end on either side of it."""
+    (start, band, depth), (edge, above) = contour, lifted
+    found = []
+    ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), last_branch(s) * (1 - BESIDE), edge, band]
+    for left, right in itertools.pairwise(sorted({min(max(end, start), band) for end in ends})):
+        if right - left > 3 * BESIDE * cut:
+            found += _few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
     return found
 
 
@@ -146,7 +163,8 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
 
 def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]) -> float:
     """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
-    radius = 0.4 * min((abs(k - other) for other in (*others, *s.branches) if other not in group), default=abs(k))
+    branches = (complex(on_the_right(b)) for b in s.branches)
+    radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
     f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
     least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))

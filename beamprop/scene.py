@@ -18,21 +18,24 @@ class Scene(NamedTuple):
     omega: np.ndarray  # (F, 1)
     thickness: float
     k0: Any  # float for one frequency, (F,) for several
-    branches: tuple[Any, ...]  # complex kx of the branch points, Re >= 0 and Im >= 0, shaped like k0
+    branches: tuple[Any, ...]  # complex kx of the branch points, Im >= 0 (Re < 0: backward waves), shaped like k0
 
 
-def scene(slab: Slab, frequency: float) -> Scene:
-    """Evaluate a slab at one frequency; refuse half-spaces in which the question has no answer."""
-    s = scenes(slab, np.array([frequency]))
+def scene(slab: Slab, frequency: float, backward: bool = False) -> Scene:
+    """Evaluate a slab at one frequency; refuse half-spaces in which the question has no answer: see `scenes`."""
+    s = scenes(slab, np.array([frequency]), backward)
     return s._replace(k0=float(s.k0[0]), branches=tuple(complex(b[0]) for b in s.branches))
 
 
-def scenes(slab: Slab, f: np.ndarray) -> Scene:
-    """Evaluate a slab at frequencies (F,)."""
+def scenes(slab: Slab, f: np.ndarray, backward: bool = False) -> Scene:
+    """Evaluate a slab at frequencies (F,); `backward` says whether the half-space behind may carry backward waves."""
     branches = []
     for name, fluid in (("before", slab.before), ("after", slab.after)):
         k = fluid.wavenumber(f)
-        bad = (k.real < 0) | ((k.real == 0) | np.isinf(k) if name == "before" else False)
+        if name == "before":
+            bad = (k.real <= 0) | np.isinf(k)
+        else:  # waves that decay within a wavelength run neither way: any contour passes their branch point alike
+            bad = (-k.real > k.imag) & (not backward)
         if np.any(bad):
             raise ValueError(
                 f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}"
@@ -69,6 +72,16 @@ def layers_at(layers: LayerValues, rows: np.ndarray) -> LayerValues:
     return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
 
 
+def on_the_right(branch: Any) -> Any:
+    """Of the branch points b and -b the one with Re kx >= 0: it lies below the axis for a half-space of backward waves."""
+    return np.where(np.real(branch) < 0, -branch, branch)
+
+
+def backward_branch(s: Scene) -> complex | None:
+    """The branch point, with Re kx > 0, of a half-space that carries backward waves; its cut leads downward. Of one frequency."""
+    return next((-b for b in s.branches if -b.real > b.imag), None)
+
+
 def nearest_branch(s: Scene) -> Any:
     """Distance of the nearest branch point from kx = 0; shaped like k0."""
     return np.min(np.abs(np.stack(s.branches)), axis=0)
@@ -76,12 +89,12 @@ def nearest_branch(s: Scene) -> Any:
 
 def last_branch(s: Scene) -> Any:
     """The largest Re kx of a branch point: guided modes lie beyond; shaped like k0."""
-    return np.max(np.real(np.stack(s.branches)), axis=0)
+    return np.max(np.abs(np.real(np.stack(s.branches))), axis=0)
 
 
 def real_branches(s: Scene) -> list[float]:
     """Re kx of the branch points that lie nearer to the real axis than to the imaginary one; of one frequency."""
-    return [b.real for b in s.branches if b.real > abs(b.imag)]
+    return [abs(b.real) for b in s.branches if abs(b.real) > abs(b.imag)]
 
 
 def is_lossless(s: Scene) -> bool:

@@ -56,7 +56,7 @@ class FieldMap:
 
     def choose(self, i: int) -> None:
         """The line of integration, and the error, for frequency i."""
-        s = scene(self.slab, float(self.frequency[i]))
+        s = scene(self.slab, float(self.frequency[i]), backward=True)
         beams = fan(self._source, self.angles, s.k0, self.rtol * 1e-4)
         if self.period is None:
             transfer = transfers.through(s, self.beam.z0)
