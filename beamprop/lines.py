@@ -254,7 +254,7 @@ def _solution_in_stretches(search: _Search) -> Solution:
     plan = stretches.plan_stretches(search.reach, search.reach.path - s.thickness, rtol, search.noise)
     best, why = None, _too_many(rtol)
     for _ in range(TRIES_IN_STRETCHES):
-        pair = _pair_in_stretches(search, plan)
+        pair = stretches.pair_of_lines(s, search.reach, plan, search.start, search.found is misplaced.UNCLEAR)
         if pair is None:
             plan, why = plan._replace(depth=plan.depth / 3), search.refusal()
             continue
@@ -276,27 +276,6 @@ def _solution_in_stretches(search: _Search) -> Solution:
     if best is None:
         raise ValueError(why)
     return best
-
-
-def _pair_in_stretches(search: _Search, plan: stretches.Plan) -> tuple[Line, Line] | None:
-    """A contour in stretches and another to judge it by; None where poles on their wrong side cannot be told apart."""
-    s, reach = search.scene, search.reach
-    found, parts = misplaced.NONE, [stretches.Stretch(0.0, math.inf, -1)]
-    if search.found is misplaced.UNCLEAR:
-        parts = stretches.sides_of_bands(s, plan.other().band)
-    else:
-        found = misplaced.misplaced(s, 1.05 * plan.depth, plan.other().band, search.start)
-        if found is misplaced.UNCLEAR:
-            return None
-    parts = stretches.met_at_branches(s, parts)
-    across, along = max(reach.extent, reach.source), reach.path - s.thickness
-    one, two = (
-        misplaced.with_residues(
-            s, stretches.stretched_line(s, parts, p, across, along), found, across, reach.path, bool(i)
-        )
-        for i, p in enumerate((plan, plan.other()))
-    )
-    return one, two
 
 
 #: What share of its window a straight line is tried with first, and how much more of everything it is given then.

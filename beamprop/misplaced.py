@@ -78,7 +78,7 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
         return NONE
     s = up_to_wall(s)
     try:
-        found = _with_circles(s, _below(s, depth, band, start))
+        found = with_circles(s, _below(s, depth, band, start))
     except TooManyModes:
         found = UNCLEAR
     if backward_branch(s) is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
@@ -99,9 +99,9 @@ def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
         return _beside_cut(s, cut.real, (start, band, depth), (edge, above))
     if not is_lossless(s) and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
         return []
-    found = _few_modes(s, Box(start, min(edge, band), -depth, 0.0))
+    found = few_modes(s, Box(start, min(edge, band), -depth, 0.0))
     if band > edge:
-        found += _few_modes(s, Box(edge, band, -depth, above))
+        found += few_modes(s, Box(edge, band, -depth, above))
     return found
 
 
@@ -112,11 +112,11 @@ def _beside_cut(s: Scene, cut: float, contour: tuple[float, float, float], lifte
     ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), last_branch(s) * (1 - BESIDE), edge, band]
     for left, right in itertools.pairwise(sorted({min(max(end, start), band) for end in ends})):
         if right - left > 3 * BESIDE * cut:
-            found += _few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
+            found += few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
     return found
 
 
-def _with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
+def with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
     """Discs around the backward ones among some modes; `others` are misplaced too."""
     groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
     middles = tuple(sum(group) / len(group) for group in groups)
@@ -138,7 +138,7 @@ def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
-def _few_modes(s: Scene, box: Box) -> list[Mode]:
+def few_modes(s: Scene, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
     total = winding(dispersion_of(s), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
@@ -239,7 +239,7 @@ def _crossing_at(
     box = Box(crossing, band, 0.0, depth)
     total = winding(f, box.outline(48), FINEST * band, MOST_VALUES, thorough=True)
     forward = _found_above(s, f, box, total)
-    return _with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
+    return with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
 
 
 def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, band: float) -> tuple[float, float]:

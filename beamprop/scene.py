@@ -32,10 +32,9 @@ def scenes(slab: Slab, f: np.ndarray, backward: bool = False) -> Scene:
     branches = []
     for name, fluid in (("before", slab.before), ("after", slab.after)):
         k = fluid.wavenumber(f)
-        if name == "before":
-            bad = (k.real <= 0) | np.isinf(k)
-        else:  # waves that decay within a wavelength run neither way: any contour passes their branch point alike
-            bad = (-k.real > k.imag) & (not backward)
+        # waves that decay within a wavelength run neither way: any contour passes their branch point alike
+        behind = (-k.real > k.imag) & (not backward)
+        bad = (k.real <= 0) | np.isinf(k) if name == "before" else behind
         if np.any(bad):
             raise ValueError(
                 f"{name}: expected a half-space that carries forward waves at {f[bad][0]} Hz, got {fluid!r}"

@@ -20,7 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import misplaced
+from .misplaced import MisplacedPoles
+from .modes import BESIDE, Mode
 from .response import cell_matrix
+from .roots import Box, TooManyModes
 from .scene import Scene, on_the_right
 from .spectral import SLOPE, Line, Reach
 
@@ -90,11 +94,17 @@ def _half_trace(s: Scene, k: np.ndarray, loss: float = 0.0) -> np.ndarray:
         return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))[0]
 
 
-def sides_of_bands(s: Scene, end: float) -> list[Stretch]:
-    """Stretches from 0 to `end` of a periodic slab, by the side to which a trace of loss moves its modes.
+class Bands(NamedTuple):
+    """A periodic slab's axis from 0 to the band's end, by the side to which a trace of loss moves the modes there."""
 
-    Derivatives are imaginary parts of half the trace at complex kx and densities. In a gap there are no modes of the cell: the
-    side changes half-way.
+    parts: list[Stretch]
+    gaps: list[tuple[float, float]]  #: where the cell has no modes, but a face of the slab may
+
+
+def bands_of(s: Scene, end: float) -> Bands:
+    """The bands of a periodic slab: derivatives are imaginary parts of half the trace at complex kx and densities.
+
+    The side changes half-way through a gap.
     """
     k = np.linspace(0, end, SAMPLES + 1)[1:]
     k = np.unique(np.concatenate([k, np.geomspace(1e-3, 1, DECADES) * min(s.k0, end)]))
@@ -104,14 +114,34 @@ def sides_of_bands(s: Scene, end: float) -> list[Stretch]:
     clear = inside & (np.minimum(np.abs(by_k), np.abs(by_loss)) > UNSEEN)
     at = np.flatnonzero(clear)
     if not at.size:
-        return [Stretch(0.0, end, -1)]
+        return Bands([Stretch(0.0, end, -1)], [(float(k[0]), end)])
+    borders = np.flatnonzero(np.diff(inside))  # gaps end between two samples; those of less than two samples are none
+    runs = np.split(np.arange(k.size), borders + 1)
+    gaps = [(float(k[run[0]]), float(k[run[-1]])) for run in runs if not inside[run[0]] and run.size > 1]
     side = (np.sign(by_k) * np.sign(by_loss)).astype(int)[at]
     change = np.flatnonzero(np.diff(side))
     ends = [0.0, *((k[at[change]] + k[at[change + 1]]) / 2), end]
-    return [
-        Stretch(float(lo), float(hi), int(v))
-        for (lo, hi), v in zip(itertools.pairwise(ends), [*side[change], side[-1]], strict=True)
-    ]
+    sides = zip(itertools.pairwise(ends), [*side[change], side[-1]], strict=True)
+    return Bands([Stretch(float(lo), float(hi), int(v)) for (lo, hi), v in sides], gaps)
+
+
+def misplaced_in_gaps(s: Scene, bands: Bands, away: float) -> list[MisplacedPoles]:
+    """Modes of the slab's faces in the gaps, no farther than `away` from the axis, on the wrong side of the contour.
+
+    Those that belong below a contour that passes below, and those that belong above one that passes above.
+    """
+    found: dict[int, list[Mode]] = {-1: [], 1: []}
+    at = sorted(float(abs(b.real)) for b in s.branches)
+    cuts = [b * (1 + side * BESIDE) for b in at for side in (-1, 1)]
+    for lo, hi in bands.gaps:
+        ends = sorted({lo, hi, *(v for v in (*cuts, *(part.lo for part in bands.parts)) if lo < v < hi)})
+        for left, right in itertools.pairwise(ends):
+            if right - left > 3 * BESIDE * right:
+                side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
+                here = misplaced.few_modes(s, Box(left, right, -away, away))
+                found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
+    above = misplaced.with_circles(s, found[1])._replace(crossing=0.0)
+    return [misplaced.with_circles(s, found[-1]), above]
 
 
 def met_at_branches(s: Scene, parts: list[Stretch]) -> list[Stretch]:
@@ -149,7 +179,9 @@ def stretched_line(s: Scene, parts: list[Stretch], plan: Plan, across: float, al
         Length of the path along x, and along z in the half-spaces, over which phases turn.
     """
     parts = [part for part in parts if part.lo < plan.band]
-    edges = np.concatenate([_edges(s, _corners(part, plan, part is parts[-1]), (across, along), plan.finer) for part in parts])
+    edges = np.concatenate(
+        [_edges(s, _corners(part, plan, part is parts[-1]), (across, along), plan.finer) for part in parts]
+    )
     starts, stops = edges[:, 0], edges[:, 1]
     g, w = np.polynomial.legendre.leggauss(plan.nodes)
     half = (stops - starts) / 2
@@ -194,3 +226,46 @@ def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
     count = max(1, math.ceil(abs(stop - start) / (flat * abs(start.imag))))
     at = np.linspace(start, stop, count + 1)
     return np.stack([at[:-1], at[1:]], axis=1)
+
+
+def pair_of_lines(s: Scene, reach: Reach, plan: Plan, start: float, crowded: bool) -> tuple[Line, Line] | None:
+    """A contour in stretches and another to judge it by, circles around what they leave on the wrong side.
+
+    Parameters
+    ----------
+    s : Scene
+    reach : Reach
+    plan : Plan
+    start : float
+        Re kx from which poles are searched for.
+    crowded : bool
+        Whether the slab is periodic and guides more modes than can be found: its bands say where the contour passes.
+
+    Returns
+    -------
+    pair of Line
+        None where poles cannot be told apart.
+    """
+    end = plan.other().band
+    try:
+        if crowded:
+            bands = bands_of(s, end)
+            parts, found = bands.parts, misplaced_in_gaps(s, bands, max(plan.depth, plan.height))
+        else:
+            parts = [Stretch(0.0, math.inf, -1)]
+            found = [misplaced.misplaced(s, 1.05 * plan.depth, end, start)]
+    except TooManyModes:
+        return None
+    if misplaced.UNCLEAR in found:
+        return None
+    parts = met_at_branches(s, parts)
+    across = max(reach.extent, reach.source)
+    lines = []
+    for second, p in ((False, plan), (True, plan.other())):
+        line = stretched_line(s, parts, p, across, reach.path - s.thickness)
+        both = [misplaced.with_residues(s, line, poles, across, reach.path, second) for poles in found]
+        around = sum(circled.circles for circled in both)
+        k = np.concatenate([*(circled.k[: circled.circles] for circled in both), line.k])
+        weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), line.weight])
+        lines.append(Line(k, weight, circles=around))
+    return lines[0], lines[1]

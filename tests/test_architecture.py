@@ -33,6 +33,7 @@ ORDER = [
     "roots",
     "modes",
     "misplaced",
+    "stretches",
     "fan",
     "transfers",
     "origin",
