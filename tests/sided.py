@@ -99,28 +99,27 @@ def modes(layers, after, band):
     return found
 
 
-def contour(singular, band, height, finest=0.0, panel=0.7):
+def contour(singular, band, height, finest=0.0, panel=0.7, order=20):
     """Gauss nodes and weights from 0 to `band`, below the points (k, 1) and above the points (k, -1).
 
-    Graded geometrically towards 0 from `finest` on, if that is given.
+    If `finest` is given, nodes are graded geometrically towards 0 from there on, and the contour leaves 0 at 45 degrees.
     """
     singular = sorted(singular)
     places = np.array([0.0, *(k for k, _ in singular), band])
-    corners = [0j]
+    corners = [0j, height * (1 - 1j)] if finest else [0j]
     for i, (k, side) in enumerate(singular, 1):
         corners.append(k - 1j * side * min(height, 0.4 * (places[i + 1] - k), 0.4 * (k - places[i - 1])))
     corners.append(complex(band))
     edges = [np.zeros(1, complex)]
     for i in range(len(corners) - 1):
         start, stop = corners[i], corners[i + 1]
-        least = min(max(abs(start.imag), 1e-3 * band), max(abs(stop.imag), 1e-3 * band), height)
-        count = int(np.ceil(abs(stop - start) / (panel * least)))
-        share = np.linspace(0, 1, count + 1)
+        least = min(abs(corner.imag) or height for corner in (start, stop))
+        share = np.linspace(0, 1, int(np.ceil(abs(stop - start) / (panel * least))) + 1)
         if i == 0 and finest:
-            share = np.concatenate([[0.0], np.geomspace(finest / abs(stop), share[1], 60), share[2:]])
+            share = np.concatenate([[0.0], np.exp(np.arange(np.log(finest / abs(stop)), 0, 0.6)), [1.0]])
         edges.append(start + (stop - start) * share[1:])
     edges = np.concatenate(edges)
-    g, v = np.polynomial.legendre.leggauss(20)
+    g, v = np.polynomial.legendre.leggauss(order)
     width = np.diff(edges)[:, None] / 2
     return (edges[:-1, None] + width * (1 + g)).ravel(), (width * v).ravel()
 
@@ -137,8 +136,8 @@ def gaussian(fwhm, angle=0.0, k0=K0):
     return lambda k: a * np.sqrt(np.pi) * np.exp(-((a * (k - k0 * np.sin(np.radians(angle))) / 2) ** 2))
 
 
-def exact_response(layers, after, k, z, z0, omega, before=AIR, digits=40):
-    """`response` in front of and behind layers of positive density and modulus, with 40 digits."""
+def exact_response(layers, after, k, z, z0, omega, before=AIR, digits=30):
+    """`response` in front of and behind layers of positive density and modulus, with 30 digits."""
     with mp.workdps(digits):
         w, total = mp.mpf(omega), mp.fsum(mp.mpf(d) for *_, d in layers)
         rows = np.empty((len(z), len(k)), complex)
