@@ -44,31 +44,25 @@ def with_loss(case, loss):
     return ([sided.lossy(v, loss) for v in layers], sided.lossy(after, loss)) if loss else (layers, after)
 
 
-@pytest.mark.parametrize("loss", [0.0, 1e-5, 1e-3, 1e-2])
 @pytest.mark.parametrize("case", BACKWARD)
-def test_backward_waves_that_a_half_space_guides(case, loss):
-    """Limiting absorption: the contour passes above those modes that a trace of loss moves below the axis."""
-    layers, after = BACKWARD[case]
-    known = sided.modes(layers, after, 340.0)
+def test_backward_waves_that_a_half_space_guides(case):
+    """Limiting absorption: the contour passes above those modes that a trace of loss moves below the axis.
+
+    Without loss and with, and the field goes over from one to the other in proportion to a little loss.
+    """
+    known = sided.modes(*BACKWARD[case], 340.0)
     assert {side for _, side in known} == {1, -1}
-    layers, after = with_loss(case, loss)
     z = [-0.02, 0.0, 0.01, 0.06]
     k, w = sided.contour([*known, (K0, 1)], 330.0, 6.0)
-    truth = sided.summed(k, w, sided.response(layers, after, k, z, -0.02), sided.gaussian(0.05, 20), X)
-    ds, warned = asked(slab_of(layers, after), bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
-    assert off(ds.p.values, truth).max() < 1e-8
-    assert not warned
-
-
-@pytest.mark.parametrize("case", BACKWARD)
-def test_the_field_is_continuous_as_a_half_space_loses_its_loss(case):
-    beam, z = bp.GaussianBeam(0.05, 20, 0, -0.02), [0.0, 0.05]
-    losses = (0.0, 1e-6, 1e-5, 4e-5)
-    p = [bp.field(slab_of(*with_loss(case, loss)), beam, F, X, z, rtol=1e-9).p.values for loss in losses]
-    little, more, most = (off(v, p[0]).max() for v in p[1:])
-    assert 0 < little < 3e-4
-    assert more == pytest.approx(10 * little, rel=0.05)
-    assert most == pytest.approx(4 * more, rel=0.05)
+    p = {}
+    for loss in (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
+        layers, after = with_loss(case, loss)
+        truth = sided.summed(k, w, sided.response(layers, after, k, z, -0.02), sided.gaussian(0.05, 20), X)
+        ds, warned = asked(slab_of(layers, after), bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
+        p[loss] = ds.p.values
+        assert off(p[loss], truth).max() < 1e-8
+        assert not warned
+    assert off(p[1e-5], p[0.0]).max() == pytest.approx(10 * off(p[1e-6], p[0.0]).max(), rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -76,7 +70,7 @@ def test_the_field_is_continuous_as_a_half_space_loses_its_loss(case):
     [
         [(-0.6 * RHO, 2 * BULK, 0.04 * LAM), (RHO, BULK, 0.1 * LAM)],
         [(-0.6 * RHO, -2 * BULK, 0.1 * LAM), (RHO, BULK, 0.1 * LAM)],
-        [(-3 * RHO, 2 * BULK, 0.1 * LAM), (3 * RHO, 2 * BULK, 0.05 * LAM)],
+        [(-0.6 * RHO, 2 * BULK, 0.1 * LAM), (RHO, BULK, 0.03 * LAM)],
     ],
 )
 def test_a_negative_layer_in_front_of_density_zero(layers):
