@@ -30,7 +30,7 @@ def off(p, truth):
 # --- positions --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("points", "digits"), [(2**10, 9), (2**12, 10), (2**14, 11), (2**14, 12), (2**16, 16)])
+@pytest.mark.parametrize(("points", "digits"), [(100, 12), (2**10, 12), (2**12, 12), (2**14, 12), (2**16, 13)])
 def test_positions_that_are_even_to_printed_digits(points, digits):
     """Typed or read from a file, an even grid is even to some digits: the answer is for the positions, not for the grid.
 
