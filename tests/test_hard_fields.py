@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 import sided
-from sided import AIR, BULK, K0, LAM, OMEGA, RHO, F
+from sided import AIR, BULK, K0, LAM, RHO, F
 
 import beamprop as bp
 

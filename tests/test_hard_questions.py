@@ -1,10 +1,8 @@
 """Positions, origins, widths and slabs as users ask for them: answered to rtol, and not refused or warned of without need."""
 
-import re
 import warnings
 
 import numpy as np
-import oracles
 import pytest
 import sided
 from sided import AIR, BULK, K0, LAM, RHO, F
@@ -91,7 +89,7 @@ def test_a_gaussian_of_20_000_wavelengths_at_45_degrees():
     assert not warned
 
 
-@pytest.mark.parametrize(("density", "speed"), [(1e12, 343.0), (1e6, 3000.0), (1.25, 1e9), (1250.0, 1e6)])
+@pytest.mark.parametrize(("density", "speed"), [(1.0, 1e9), (1.0, 1e7), (30.0, 1e8), (1e4, 1e9)])
 def test_half_spaces_nearly_rigid_or_of_huge_speed(density, speed):
     """Its branch point next to kx = 0 takes a contour that is graded towards the origin."""
     after = (RHO * density, RHO * density * speed**2)
