@@ -120,3 +120,21 @@ def test_slits_in_front_of_the_paper_s_slab_with_little_loss(gap):
     assert off(p[1e-6], p[0.0]).max() < 1e-3
     assert off(p[1e-5], p[0.0]).max() == pytest.approx(10 * off(p[1e-6], p[0.0]).max(), rel=0.1)
     assert off(p[1e-4], p[0.0]).max() == pytest.approx(100 * off(p[1e-6], p[0.0]).max(), rel=0.5)
+
+
+def test_100_000_periods_without_loss():
+    """Thousands of modes: answered, and a loss in every fluid changes the field in proportion."""
+    cell, x, p = bp.lmmd_cell(0.05, 0.0), np.linspace(-0.3, 0.3, 31), {}
+
+    def lossy(fluid, loss):
+        return bp.Fluid(*sided.lossy((complex(fluid.density), complex(fluid.bulk_modulus)), loss))
+
+    for loss in (0.0, 1e-8, 1e-7):
+        layers = [bp.Layer(lossy(layer.fluid, loss), layer.thickness) for layer in cell.layers]
+        slab = bp.Slab(layers, 100_000, lossy(bp.AIR, loss), lossy(bp.AIR, loss))
+        ds, warned = asked(slab, bp.GaussianBeam(0.096, 0, 0, -0.01), F, x, [0.0, slab.thickness], rtol=1e-6)
+        assert not warned
+        p[loss] = ds.p.values
+    little, more = (off(p[loss], p[0.0]).max() for loss in (1e-8, 1e-7))
+    assert 1e-6 < little < 1e-2
+    assert more == pytest.approx(10 * little, rel=0.05)
