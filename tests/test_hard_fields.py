@@ -1,0 +1,136 @@
+"""Fields that are hard to compute: each against a truth of its own, from plain matrices on contours or from closed forms."""
+
+import warnings
+
+import numpy as np
+import pytest
+import sided
+from sided import AIR, BULK, K0, LAM, RHO, F
+
+import beamprop as bp
+
+X = np.linspace(-0.5, 0.5, 21)
+
+
+def slab_of(layers, after=AIR):
+    return bp.Slab([bp.Layer(bp.Fluid(rho, K), d) for rho, K, d in layers], 1, after=bp.Fluid(*after))
+
+
+def asked(*question, **more):
+    """A field, and whether it was warned of."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        ds = bp.field(*question, **more)
+    return ds, any(issubclass(w.category, bp.AccuracyWarning) for w in said)
+
+
+def off(p, truth):
+    """Largest error on each plane over its largest |p|."""
+    return np.abs(p - truth).max(axis=1) / np.abs(truth).max(axis=1)
+
+
+# --- backward waves ---------------------------------------------------------------------------------------
+
+#: Ordinary layers in front of a half-space of negative density. Its face to a heavier layer guides a wave whose power, most of it
+#: in the half-space, runs against its phase; the layers guide a forward wave besides.
+BACKWARD = {
+    "one layer": ([(2.4 * RHO, 3 * BULK, 0.02 * LAM)], (-2 * RHO, BULK)),
+    "two layers": ([(0.8 * RHO, 2 * BULK, 0.1 * LAM), (4.4 * RHO, 2 * BULK, 0.02 * LAM)], (-3 * RHO, 0.7 * BULK)),
+}
+
+
+def with_loss(case, loss):
+    layers, after = BACKWARD[case]
+    return ([sided.lossy(v, loss) for v in layers], sided.lossy(after, loss)) if loss else (layers, after)
+
+
+@pytest.mark.parametrize("case", BACKWARD)
+def test_backward_waves_that_a_half_space_guides(case):
+    """Limiting absorption: the contour passes above those modes that a trace of loss moves below the axis.
+
+    Without loss and with, and the field goes over from one to the other in proportion to a little loss.
+    """
+    known = sided.modes(*BACKWARD[case], 340.0)
+    assert {side for _, side in known} == {1, -1}
+    z = [-0.02, 0.0, 0.01, 0.06]
+    k, w = sided.contour([*known, (K0, 1)], 330.0, 6.0)
+    p = {}
+    for loss in (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
+        layers, after = with_loss(case, loss)
+        truth = sided.summed(k, w, sided.response(layers, after, k, z, -0.02), sided.gaussian(0.05, 20), X)
+        ds, warned = asked(slab_of(layers, after), bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
+        p[loss] = ds.p.values
+        assert off(p[loss], truth).max() < 1e-8
+        assert not warned
+    assert off(p[1e-5], p[0.0]).max() == pytest.approx(10 * off(p[1e-6], p[0.0]).max(), rel=0.05)
+
+
+@pytest.mark.parametrize(
+    "layers",
+    [
+        [(-0.6 * RHO, 2 * BULK, 0.04 * LAM), (RHO, BULK, 0.1 * LAM)],
+        [(-0.6 * RHO, -2 * BULK, 0.1 * LAM), (RHO, BULK, 0.1 * LAM)],
+        [(-0.6 * RHO, 2 * BULK, 0.1 * LAM), (RHO, BULK, 0.03 * LAM)],
+    ],
+)
+def test_a_negative_layer_in_front_of_density_zero(layers):
+    """A layer of density 0 is a soft wall, p = 0, to every plane wave but that of normal incidence; what is behind it is dark."""
+    known = sided.modes(layers, None, 340.0)
+    assert any(side < 0 for _, side in known)
+    thickness = sum(d for *_, d in layers)
+    z = [-0.02, -0.01, 0.0, 0.7 * thickness]
+    k, w = sided.contour([*known, (K0, 1)], 330.0, 6.0)
+    truth = sided.summed(k, w, sided.response(layers, None, k, z, -0.02), sided.gaussian(0.05, 20), X)
+    wall = slab_of([*layers, (0.0, BULK, 0.1 * LAM)])
+    ds, warned = asked(wall, bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
+    assert off(ds.p.values, truth).max() < 1e-8
+    assert not warned
+
+
+# --- resonances at normal incidence -----------------------------------------------------------------------
+
+MIRRORS = {"steel": (7800.0, 5900.0), "water": (1000.0, 1480.0)}
+
+
+@pytest.mark.parametrize("beside", [0.0, 1e-12, 1e-9, 1e-7, 1e-5])
+@pytest.mark.parametrize("mirror", MIRRORS)
+def test_a_cavity_between_quarter_wave_mirrors(mirror, beside):
+    """Half a wavelength of air between quarter waves of what is 3500 and 100 000 times as hard: resonances down to 1e-9 wide.
+
+    Their poles lie next to kx = 0. Right to rtol with no warning, or with a warning and an estimate that holds.
+    """
+    rho, speed = MIRRORS[mirror]
+    plate = (rho, rho * speed**2, speed / F / 4)
+    layers = [plate, (RHO, BULK, LAM / 2), plate]
+    frequency, x = F * (1 + beside), np.linspace(-1, 1, 21)
+    k0, z = 2 * np.pi * frequency / 343.0, [-0.05, sum(d for *_, d in layers)]
+    k, w = sided.contour([(k0, 1)], 88.0, 2.0, finest=1e-8, panel=4.0, order=12)
+    h = sided.exact_response(layers, AIR, k, z, -0.1, 2 * np.pi * frequency)
+    truth = sided.summed(k, w, h, sided.gaussian(0.5, 3, k0), x)
+    ds, warned = asked(slab_of(layers), bp.GaussianBeam(0.5, 3, 0, -0.1), frequency, x, z, rtol=1e-8)
+    error, estimate = off(ds.p.values, truth).max(), float(ds.error_estimate)
+    assert error < 3 * estimate
+    assert warned == (estimate > 1e-8)
+    assert estimate < 1e-4  # no worse than what rounding leaves of the sharpest
+    assert error < 1e-8 or beside < 1e-7
+
+
+# --- dark planes ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("widths", [3, 30, 300])
+def test_planes_at_nodes_in_front_of_a_soft_wall(widths):
+    """An image of the other sign behind the wall: 2i sin(kz z). Among many planes some are at nodes, where |p| is small."""
+    beam = bp.GaussianBeam(widths * LAM, 0, 0, -2.3 * LAM)
+    nodes = -0.5 * LAM * np.arange(1, 5)
+    z = np.unique(np.concatenate([np.linspace(-2.3 * LAM, 0, 24), nodes, nodes - 1e-6 * LAM, nodes - 1e-3 * LAM]))
+    x = np.linspace(-1, 1, 41)
+    k, w = sided.contour([(K0, 1)], 120.0, min(2.0, 4 / (widths * LAM)))
+    kz = np.sqrt(K0**2 - k**2)
+    h = np.array([2j * np.sin(kz * depth) * np.exp(-1j * kz * beam.z0) for depth in z])
+    truth = sided.summed(k, w, h, sided.gaussian(beam.fwhm), x)
+    ds, warned = asked(slab_of([(0.0, BULK, 0.1)]), beam, F, x, z, rtol=1e-8)
+    p = ds.p.values
+    assert np.all(np.abs(p[z == 0]) < 1e-13)
+    assert off(p[z < 0], truth[z < 0]).max() < 1e-8
+    assert not warned
