@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.integrate import simpson
 
 from .. import datasets, lines, memory, propagate, spectral, validate, widths
-from ..beam import Beam
+from ..beam import Beam, moved_to_origin
 from ..conventions import outgoing_kz
 from ..fan import single
 from ..media import FluidValues, Slab
@@ -28,6 +28,8 @@ DOUBLINGS = 6
 #: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
 FINER = 8
 SIDES = ("reflected", "transmitted")
+#: Variables that are positions on x.
+PLACES = ("centroid", "moments_from", "moments_to")
 
 
 class Beamlet(NamedTuple):
@@ -112,12 +114,15 @@ def beam_measures(
     memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
     worst = 0.0
+    source, origin = moved_to_origin(beam)
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
         s = scene(slab, float(flat[i]))
-        for side, (beamlet, error) in enumerate(_both(s, beam.at_angle(float(flat_angles[j])), rtol, half)):
+        for side, (beamlet, error) in enumerate(_both(s, source.at_angle(float(flat_angles[j])), rtol, half)):
             worst = max(worst, error)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
+    for name in PLACES:
+        table[name] += origin
     checks.announce(worst, rtol)
     _announce(table, window is not None)
     dims, pick = checks.dims(frequency=f, angle=angles)
