@@ -199,6 +199,8 @@ def _measure(
 
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
+        if not solution.fft:
+            memory.check_terms(solution.line.k.size, x.size)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
