@@ -13,7 +13,7 @@ from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
-from . import memory, validate
+from . import memory, tables, validate
 from .columns import read_columns
 from .validate import as_count, as_number
 
@@ -203,6 +203,10 @@ class GaussianBeam(_Tilted):
 def _spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """sum_j weights_j exp(-i k x_j), shaped like k and then like weights_j, in blocks of bounded memory."""
     k = np.asarray(k)
+    step = tables.even_step(x) if x.size >= tables.MANY else 0.0
+    if step:
+        summed = tables.over_positions(k.ravel(), weights.reshape(x.size, -1), float(x[0]), step)
+        return summed.reshape(*k.shape, *weights.shape[1:])
     out = np.empty((k.size, *weights.shape[1:]), complex)
     block = max(1, 2_000_000 // max(1, x.size))
     flat = k.ravel()

@@ -168,6 +168,20 @@ def check_contour(waves: float, beams: int = 1, planes: int = 9) -> None:
     )
 
 
+#: Terms of the sum over plane waves at all positions of one window: 7e8 take a second on one core.
+MOST_TERMS = 4e9
+
+
+def check_terms(waves: int, points: int) -> None:
+    """The sum by which a beam is looked for in a window, of which nobody has chosen the positions."""
+    if (terms := float(waves) * points) > MOST_TERMS:
+        raise ValueError(
+            f"slab: expected one in which the beam is found by sums of at most {MOST_TERMS:.3g} terms, got one that takes "
+            f"{terms:.3g} ({waves:.3g} plane waves at {points:.3g} positions, {terms / 7e8:.0f} s for each of several windows): "
+            "take a thinner slab, a nearer launch plane or a larger rtol, or ask for the field at positions of your choice"
+        )
+
+
 def most_values(bytes_each: float = 600.0) -> float:
     """How many values of a dispersion function may be held at a time, and be waited for: 2e6 take up to half a minute."""
     return min(limit() / bytes_each, 2e6)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from . import judge, spectral
+from . import judge, spectral, tables
 from .beam import Beam
 from .fan import Fan, single
 from .lines import Solution, fft_is_cheaper
@@ -33,6 +33,10 @@ def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndar
     return out[0]
 
 
+#: Up to so many planes, sums by tables take less than exponentials that all planes share.
+FEW_PLANES = 4
+
+
 def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
     """p(z, x) of all asked beams into out (A, Z, X), of which (Z, X) must be contiguous."""
     line, n = solution.line, solution.fft
@@ -52,6 +56,11 @@ def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, o
         grid = spectral.grid_of(x)
         for a, b, into in zip(right, left, out, strict=True):
             spectral.grid_sum(line, h, a, b, grid, n, into)
+    elif h.shape[0] <= FEW_PLANES and x.size >= tables.MANY and (step := tables.even_step(x)):
+        for a, b, into in zip(right, left, out, strict=True):
+            into[...] = tables.over_waves(line.k, a * h, float(x[0]), step, x.size)
+            if np.any(b):
+                into += tables.over_waves(-line.k, b * h, float(x[0]), step, x.size)
     elif len(right) == 1 or h.shape[0] > 64:
         for a, b, into in zip(right, left, out, strict=True):
             into[...] = spectral.direct_sum(line, h, a, b, x)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from . import fft, lines, misplaced, origin, propagate, spectral, transfers
+from . import fft, lines, memory, misplaced, origin, propagate, spectral, transfers
 from .beam import Beam
 from .conventions import outgoing_kz
 from .fan import single
@@ -334,6 +334,8 @@ def _measured_alone(
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
         solution = lines.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
+        if not solution.fft:
+            memory.check_terms(solution.line.k.size, x.size)
         h = transfer(solution.line.k, planes)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)

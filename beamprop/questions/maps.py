@@ -113,7 +113,12 @@ def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.nd
     value = validate.as_number(period, "period", positive=True)
     k0 = float(checks.k0(slab, frequency)[0])
     across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
-    seam = float(max(abs(across[0]), abs(across[-1])) / np.abs(across).max())
+    largest = float(np.abs(across).max())
+    if largest == 0:  # a gap of the beam is all that such a period holds
+        raise ValueError(
+            f"period: expected a grid wide enough for the beam, got {value:.6g} m, in which the launched |p| is zero"
+        )
+    seam = float(max(abs(across[0]), abs(across[-1])) / largest)
     if seam > 1e-2:
         raise ValueError(
             f"period: expected a grid wide enough for the beam, got {value:.6g} m, at whose ends the launched |p| is "

@@ -28,6 +28,8 @@ DOUBLINGS = 6
 #: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
 FINER = 8
 SIDES = ("reflected", "transmitted")
+#: Variables that are positions on x.
+PLACES = ("centroid", "moments_from", "moments_to")
 
 
 class Beamlet(NamedTuple):
@@ -119,7 +121,7 @@ def beam_measures(
             worst = max(worst, error)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
-    for name in ("centroid", "moments_from", "moments_to"):
+    for name in PLACES:
         table[name] += origin
     checks.announce(worst, rtol)
     _announce(table, window is not None)
@@ -197,6 +199,8 @@ def _measure(
 
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
+        if not solution.fft:
+            memory.check_terms(solution.line.k.size, x.size)
         h = face(solution.line.k)[None]
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)

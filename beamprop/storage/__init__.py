@@ -16,6 +16,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from .. import validate
 from ..conventions import label
 from .blocked import BlockedVariable, Blocks
 from .parts import joined, split
@@ -58,9 +59,8 @@ def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compr
     """
     if not isinstance(ds, xr.Dataset):
         raise ValueError(f"ds: expected a Dataset, got {type(ds).__name__}")
-    if compression not in range(10):
-        raise ValueError(f"compression: expected a whole number from 0 to 9, got {compression!r}")
-    path = Path(path)
+    split_complex, compression = validate.flag(split_complex, "split_complex"), _level(compression)
+    path = validate.as_path(path)
     kind = _kind(path)
     out = split(ds) if split_complex else ds.copy(deep=False)
     for name in out.variables:
@@ -77,6 +77,13 @@ def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compr
             zarr_store.write(draft, out)
 
     write_whole(path, write)
+
+
+def _level(compression: int) -> int:
+    level = validate.as_count(compression, "compression", 0)
+    if level > 9:
+        raise validate.refuse("compression", "a whole number from 0 to 9", compression)
+    return level
 
 
 def save_blocks(
@@ -102,7 +109,7 @@ def save_blocks(
     rest : function
         The dataset without that variable, asked for when all blocks have been written.
     """
-    path = Path(path)
+    path = validate.as_path(path)
     kind = _kind(path)
     variable = BlockedVariable(name, sizes, chunks, dict(label(name)), blocks)
 
@@ -131,7 +138,7 @@ def load(path: str | Path) -> xr.Dataset:
         No such file, an unknown ending, or a file that is damaged, cut off, or of another kind: names it, the variable,
         and what is wrong.
     """
-    path = Path(path)
+    path = validate.as_path(path)
     ds = read_settled(path, _reader(_kind(path)))
     for name in ds.variables:
         with contextlib.suppress(KeyError):
