@@ -273,6 +273,8 @@ def _solution_in_stretches(search: _Search) -> Solution:
             plan = plan._replace(depth=plan.depth * 0.7, height=plan.height * 0.75, finer=plan.finer * 1.4)
     if best is None:
         raise ValueError(why)
+    if search.found is misplaced.UNCLEAR and best.error.max() > 1:  # no digit is known
+        raise ValueError(search.refusal())
     return best
 
 
