@@ -252,7 +252,7 @@ def _solution_in_stretches(search: _Search) -> Solution:
     """Shorten the panels, or widen the band where its edge is what is missing, until two contours in stretches agree."""
     s, checks, rtol = search.scene, search.checks, search.rtol
     plan = stretches.plan_stretches(search.reach, search.reach.path - s.thickness, rtol, search.noise)
-    best, why = None, _too_many(rtol)
+    best, why, in_vain = None, _too_many(rtol), 0
     for _ in range(TRIES_IN_STRETCHES):
         pair = stretches.pair_of_lines(s, search.reach, plan, search.start, search.found is misplaced.UNCLEAR)
         if pair is None:
@@ -265,9 +265,10 @@ def _solution_in_stretches(search: _Search) -> Solution:
         if error.max() > rtol and checks.dark is None:
             checks = judge.with_dark_planes(checks)
             error, edge = judge.difference(checks, one, two)
+        in_vain = in_vain + 1 if best is not None and error.max() > 0.5 * best.error.max() else 0
         if best is None or error.max() < best.error.max():
             best = Solution(pair[0], error, circles=True, amplitudes=one.amplitudes)
-        if error.max() <= rtol:
+        if error.max() <= rtol or in_vain > 1:
             break
         wider = 1.5 if edge > 0.3 * rtol else 1.0
         plan = plan._replace(band=plan.band * wider)
@@ -275,6 +276,8 @@ def _solution_in_stretches(search: _Search) -> Solution:
             plan = plan._replace(depth=plan.depth * 0.7, height=plan.height * 0.75, finer=plan.finer * 1.4)
     if best is None:
         raise ValueError(why)
+    if search.found is misplaced.UNCLEAR and best.error.max() > 1:  # no digit is known
+        raise ValueError(search.refusal())
     return best
 
 

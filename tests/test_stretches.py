@@ -8,7 +8,7 @@ import beamprop as bp
 from beamprop import scene as scenes
 from beamprop import stretches
 
-F = 2500.0
+F = 4500.0
 LAMBDA = 2 * np.pi / float(bp.AIR.wavenumber(F).real)
 K0 = 2 * np.pi / LAMBDA
 RHO, BULK = float(np.real(bp.AIR.density)), float(np.real(bp.AIR.bulk_modulus))
@@ -115,26 +115,12 @@ def test_backward_waves_are_taken_behind_only():
 PERIODS = 100_000
 
 
-def test_a_hundred_thousand_lossless_periods():
-    """A beam without waves beyond k0, against a quadrature on the axis, short enough for echoes through all periods."""
-    cell = bp.lmmd_cell(0.05, 0.0, 10)
-    slab = bp.Slab(cell, PERIODS)
-    beam = bp.GaussianBeam(8 * LAMBDA, 20.0, 0.0, -LAMBDA)
-    z = slab.thickness + LAMBDA
-    x = np.linspace(0, 300, 40) * LAMBDA
-    ds = bp.field(slab, beam, F, x, [z], rtol=1e-6)
-    layers = [(complex(y.fluid.density), complex(y.fluid.bulk_modulus), y.thickness) for y in cell.layers]
-    p = real_axis_field(layers, PERIODS, (RHO, BULK), beam, x, z, np.linspace(-0.9, 0.9, 3000) * K0)
-    assert np.abs(ds.p.values.ravel() - p).max() < 1e-6 * np.abs(p).max()
-    assert float(ds.error_estimate) < 1e-6
-
-
 def test_narrow_beams_in_a_hundred_thousand_lossless_periods():
     """Evanescent waves meet the guided modes; p of no loss is the limit of small loss."""
     beam = bp.GaussianBeam(0.5 * LAMBDA, 20.0, 0.0, -0.05 * LAMBDA)
     z = np.array([-0.02, 0.0]) * LAMBDA
     none, little = (
-        bp.field(bp.Slab(bp.lmmd_cell(0.05 + 1j * loss, loss, 10), PERIODS), beam, F, X, z, rtol=1e-7)
+        bp.field(bp.Slab(bp.lmmd_cell(0.05 + 1j * loss, loss, 10, 1 / 20), PERIODS), beam, F, X, z, rtol=1e-7)
         for loss in (0.0, 1e-11)
     )
     assert max(float(none.error_estimate), float(little.error_estimate)) < 1e-7
