@@ -132,7 +132,7 @@ def test_100_000_periods_without_loss():
     for loss in (0.0, 1e-8, 1e-7):
         layers = [bp.Layer(lossy(layer.fluid, loss), layer.thickness) for layer in cell.layers]
         slab = bp.Slab(layers, 100_000, lossy(bp.AIR, loss), lossy(bp.AIR, loss))
-        ds, warned = asked(slab, bp.GaussianBeam(0.096, 0, 0, -0.01), F, x, [0.0, slab.thickness], rtol=1e-6)
+        ds, warned = asked(slab, bp.GaussianBeam(0.012, 0, 0, -0.005), F, x, [0.0, slab.thickness], rtol=1e-6)
         assert not warned
         p[loss] = ds.p.values
     little, more = (off(p[loss], p[0.0]).max() for loss in (1e-8, 1e-7))
