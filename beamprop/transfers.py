@@ -65,7 +65,9 @@ def free(s: Scene) -> Transfer:
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
         kz = outgoing_kz(kx * (1 + shift), _shifted(s, shift).omega[0], *(v[0] for v in s.before))
-        with np.errstate(over="ignore", invalid="ignore"):  # over 1e39 m no contour is flat enough: refused by its plane waves
+        with np.errstate(
+            over="ignore", invalid="ignore"
+        ):  # over 1e39 m no contour is flat enough: refused by its plane waves
             return np.exp(1j * np.multiply.outer(z, kz))
 
     return transfer

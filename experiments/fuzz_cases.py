@@ -181,7 +181,9 @@ def _beam(rng: Rng) -> Any:
     z0 = _pick(rng, (0.0, -0.1, -0.1, -1.0, -magnitude(rng)))
     options = (
         lambda: bp.GaussianBeam(_pick(rng, (0.096, 1.0, magnitude(rng))), angle=rng.uniform(-60, 60), z0=z0),
-        lambda: bp.GaussianBeam(0.3, angle=rng.uniform(-60, 60), x0=_pick(rng, (rng.uniform(-3, 3), -magnitude(rng), magnitude(rng))), z0=z0),
+        lambda: bp.GaussianBeam(
+            0.3, angle=rng.uniform(-60, 60), x0=_pick(rng, (rng.uniform(-3, 3), -magnitude(rng), magnitude(rng))), z0=z0
+        ),
         lambda: bp.GaussianBeam(0.3, angle=rng.uniform(-60, 60), z0=z0, form="rotated", width_of="intensity"),
         lambda: bp.Profile(x, np.exp(-((x / 0.1) ** 2)), z0=z0),
         lambda: bp.Profile(np.sort(rng.normal(size=9)), rng.normal(size=9) + 1j, z0=z0),

@@ -49,5 +49,3 @@ def test_spectrum_and_field_go_through_tables(monkeypatch):
     plainly = bp.field(slab, beam, 2500.0, at, 0.1).p.values
     assert not calls
     assert np.max(np.abs(with_tables - plainly)) < 1e-12 * np.max(np.abs(plainly))
-
-
