@@ -36,8 +36,9 @@ def test_paths_that_are_none(path):
             ask()
 
 
-@pytest.mark.parametrize("name", ["compression", "split_complex"])
-@pytest.mark.parametrize("value", [np.zeros(3), "a", 2.5], ids=repr)
+@pytest.mark.parametrize(
+    ("name", "value"), [("compression", np.zeros(3)), ("split_complex", np.zeros(3)), ("split_complex", "a")], ids=repr
+)
 def test_options_of_save(tmp_path, name, value):
     """Arrays too are refused by name, and nothing is written."""
     with pytest.raises(ValueError, match=f"^{name}: expected "):
@@ -64,11 +65,16 @@ def test_a_period_in_which_nothing_is_launched(quiet):
 def test_launch_planes_that_no_contour_reaches(quiet):
     """A phase of 1e41 has no digit."""
     with pytest.raises(ValueError, match=r"^\w+: "):
-        bp.beam_width(SLAB, bp.GaussianBeam(1.5, angle=-55.0, z0=-4.8e39), 1689.0)
+        bp.beam_width(
+            bp.Slab(bp.lmmd_cell(), 20),
+            bp.GaussianBeam(1.4837585152304829, angle=-55.62800627101315, z0=-4.848487915832104e39),
+            1689.0561999300808,
+        )
 
 
-@pytest.mark.parametrize("ours", [1e-150, 1.0, 1e150])
-@pytest.mark.parametrize("theirs", [1e-150, 1.0, 1e150])
+@pytest.mark.parametrize(
+    ("ours", "theirs"), [(1e200, 1e-100), (1e200, 1e200), (1e-200, 1e-200), (1.0, 1e200), (1.0, 1e-200)]
+)
 def test_compare_is_of_any_magnitude(quiet, ours, theirs):
     """Relative errors and the scale are right where squares of |p| overflow or vanish."""
     x = np.linspace(-0.9, 0.9, 20)
