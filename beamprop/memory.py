@@ -169,7 +169,7 @@ def check_contour(waves: float, beams: int = 1, planes: int = 9) -> None:
 
 
 #: Terms of the sum over plane waves at all positions of one window: 7e8 take a second on one core.
-MOST_TERMS = 4e9
+MOST_TERMS = 2e9
 
 
 def check_terms(waves: int, points: int) -> None:
