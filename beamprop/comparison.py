@@ -90,6 +90,11 @@ def compare(
     Points that are NaN in either field are left out.
     """
     validate.flag(rescale, "rescale")
+    with np.errstate(over="ignore", invalid="ignore"):  # a ratio of |p| that no double holds is infinite
+        return _compared(a, b, bool(rescale), open_reference)
+
+
+def _compared(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_reference: xr.Dataset | None) -> xr.Dataset:
     p_a = _field(a, "a")
     unit = p_a.attrs.get("units")
     p_b = _match(_field(b, "b"), p_a, unit, "b")
@@ -111,7 +116,7 @@ def compare(
     if not (shares["z"] and _warn_of_layers(a, b, z_b, p_a["z"].values)):
         _warn_of_interpolation(between, out["relative_l2"])
     out |= {"p_a": p_a.values, "p_b": p_b.values, "error": np.abs(p_a.values - p_b.values)}
-    return _dataset(out, p_a, unit, a, b, rescale=bool(rescale), conjugate_fits_better=int(conjugate))
+    return _dataset(out, p_a, unit, a, b, rescale=rescale, conjugate_fits_better=int(conjugate))
 
 
 # --- the same problem on the same points ----------------------------------------------------------------------------
@@ -222,6 +227,7 @@ def _misfit_of_every(stride: int, old: np.ndarray, values: np.ndarray, new: np.n
     middle = middle[(old[middle + half] >= new[0]) & (old[middle - half] <= new[-1])]
     if old.size < 2 * stride or middle.size == 0:
         return 0.0
+    values = values / (np.abs(values).max() or 1.0)
     misfit = CubicSpline(old[::stride], values[..., ::stride], axis=-1)(old[middle]) - values[..., middle]
     return float(np.linalg.norm(misfit) / (np.linalg.norm(values[..., middle]) or 1.0))
 
@@ -255,7 +261,7 @@ def _weights(p_a: xr.DataArray, p_b: xr.DataArray) -> np.ndarray:
     if missing == good.size:
         raise ValueError("b: expected values in the region that a covers, got NaN in one of them throughout")
     if missing:
-        warnings.warn(f"{missing} of {good.size} points have no value in a or b and are left out", stacklevel=3)
+        warnings.warn(f"{missing} of {good.size} points have no value in a or b and are left out", stacklevel=4)
     return good * np.outer(dz, dx)
 
 
@@ -264,21 +270,32 @@ def _divide(top: np.ndarray, bottom: np.ndarray) -> np.ndarray:
     return np.where(bottom > 0, top / np.where(bottom > 0, bottom, 1), np.nan)
 
 
-def _power(p: np.ndarray, w: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> np.ndarray:
-    return (w * np.abs(p) ** 2).sum(axes)
+def _scaled_down(p: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> tuple[np.ndarray, np.ndarray]:
+    """p over a power of two near its largest |p|, whose squares neither overflow nor vanish, and that power."""
+    largest = np.abs(p).max(axes, keepdims=True)
+    power = np.ldexp(1.0, np.frexp(largest)[1] - 1)
+    return p / power, power
+
+
+def _norm(p: np.ndarray, w: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> np.ndarray:
+    small, power = _scaled_down(p, axes)
+    return np.sqrt((w * np.abs(small) ** 2).sum(axes)) * power.squeeze(axes)
 
 
 def _scale(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> np.ndarray:
     """The complex factor that brings b nearest to a."""
-    return _divide((w * np.conj(b) * a).sum((-2, -1)), _power(b, w))
+    (a, of_a), (b, of_b) = _scaled_down(a), _scaled_down(b)
+    near_one = _divide((w * np.conj(b) * a).sum((-2, -1)), (w * np.abs(b) ** 2).sum((-2, -1)))
+    return near_one * (of_a / of_b).squeeze((-2, -1))
 
 
 def _relative_l2(a: np.ndarray, b: np.ndarray, w: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> np.ndarray:
-    return np.sqrt(_divide(_power(a - b, w, axes), _power(a, w, axes)))
+    return _divide(_norm(a - b, w, axes), _norm(a, w, axes))
 
 
 def _scaled_misfit(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Relative L2 error that the best scale factor leaves."""
+    a, b = _scaled_down(a)[0], _scaled_down(b)[0]
     return _relative_l2(a, _scale(a, b, w)[..., None, None] * b, w)
 
 
@@ -326,9 +343,10 @@ def _width_and_peak(x: np.ndarray, line: np.ndarray) -> tuple[float, float]:
 
 def _warn_of_conjugate(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> bool:
     """Whether conj(b), scaled, is much nearer to a than b, scaled."""
-    power = _power(a, w)
-    if not np.any(power > 0):
+    norm = _norm(a, w)
+    if not np.any(norm > 0):
         return False
+    power = (norm / norm.max()) ** 2
     as_it_is, turned = (
         float(np.sqrt(np.average(np.nan_to_num(_scaled_misfit(a, p, w), nan=1.0) ** 2, weights=power)))
         for p in (b, np.conj(b))
@@ -338,7 +356,7 @@ def _warn_of_conjugate(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> bool:
         warnings.warn(
             f"b looks like exp(+i w t): conj(b) fits a with a relative L2 error of {turned:.2g}, b with "
             f"{as_it_is:.2g} (each with its best scale factor)",
-            stacklevel=3,
+            stacklevel=4,
         )
     return better
 
@@ -348,7 +366,7 @@ def _warn_of_interpolation(between: float, error: np.ndarray) -> None:
         warnings.warn(
             f"b's points do not resolve its field: interpolating it makes a relative error of about "
             f"{between:.2g}; compare on the same x and z",
-            stacklevel=3,
+            stacklevel=4,
         )
 
 
@@ -365,7 +383,7 @@ def _warn_of_layers(a: xr.Dataset, b: xr.Dataset, old: np.ndarray, new: np.ndarr
             warnings.warn(
                 f"the field changes from layer to layer ({min(layers):.3g} m), and b's z are too far apart "
                 "to be interpolated inside of the slab: compare on the same z",
-                stacklevel=3,
+                stacklevel=4,
             )
             return True
     return False
@@ -386,7 +404,7 @@ def _warn_of_boundaries(a: xr.Dataset, b: xr.Dataset, wraparound: np.ndarray | N
     else:
         return
     share = "" if wraparound is None else f", estimated at {np.nanmax(wraparound):.2g} (wraparound)"
-    warnings.warn(f"{text}: the wrap-around of the neighbouring beams is counted in the error{share}", stacklevel=3)
+    warnings.warn(f"{text}: the wrap-around of the neighbouring beams is counted in the error{share}", stacklevel=4)
 
 
 def _wraparound(a: xr.Dataset, b: xr.Dataset, reference: xr.Dataset) -> np.ndarray:

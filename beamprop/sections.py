@@ -334,9 +334,9 @@ def _measured_alone(
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
         solution = lines.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
-        if not solution.fft:
-            memory.check_terms(solution.line.k.size, x.size)
         h = transfer(solution.line.k, planes)
+        if not solution.fft:
+            x = needed(s, beam, solution, h, x)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
         if max(size[0], size[-1]) < EDGE * level * size.max():
@@ -345,6 +345,20 @@ def _measured_alone(
     evaluate = _between(s, beam, solution.line, h)
     found = full_width(x, p, level, evaluate)
     return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(solution.error[0])
+
+
+#: Plane waves below this share of the strongest do not show in widths, nor did they choose the positions.
+FAINT = 1e-4
+
+
+def needed(s: Scene, beam: Beam, solution: lines.Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """As many of even positions as those plane waves need that get there: of a sharp edge's most die on the way."""
+    right, left = solution.amplitudes_of(s.k0, single(beam))
+    strength = np.abs(h[0]) * (np.abs(right[0]) + np.abs(left[0]))
+    largest = float(np.max(np.abs(solution.line.k.real), where=strength > FAINT * strength.max(), initial=0.0))
+    count = 2 * max(64, math.ceil((x[-1] - x[0]) * largest / np.pi)) + 1
+    memory.check_terms(solution.line.k.size, min(count, x.size))
+    return x if count >= x.size else np.linspace(x[0], x[-1], count)
 
 
 def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

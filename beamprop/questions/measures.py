@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import simpson
 
-from .. import datasets, lines, memory, propagate, spectral, validate, widths
+from .. import datasets, lines, memory, propagate, sections, spectral, validate, widths
 from ..beam import Beam, moved_to_origin
 from ..conventions import outgoing_kz
 from ..fan import single
@@ -199,9 +199,9 @@ def _measure(
 
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
-        if not solution.fft:
-            memory.check_terms(solution.line.k.size, x.size)
         h = face(solution.line.k)[None]
+        if window is None and not solution.fft:
+            x = sections.needed(s, beam, solution, h, x)
         p = propagate.beam_sum(s, beam, solution, h, x)[0]
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:

@@ -37,6 +37,12 @@ def _kind(path: Path) -> str:
     raise ValueError(f"path: expected an ending of {', '.join(NETCDF + ZARR)}, got {path.name!r}")
 
 
+def _path(path: object) -> Path:
+    if "\0" in str(path) and isinstance(path, str | Path):
+        raise validate.refuse("path", "a name that the file system takes", str(path))
+    return validate.as_path(path)
+
+
 def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compression: int = 0) -> None:
     """Write a dataset to a netCDF file (.nc) or a Zarr store (.zarr), with checksums.
 
@@ -60,7 +66,7 @@ def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compr
     if not isinstance(ds, xr.Dataset):
         raise ValueError(f"ds: expected a Dataset, got {type(ds).__name__}")
     split_complex, compression = validate.flag(split_complex, "split_complex"), _level(compression)
-    path = validate.as_path(path)
+    path = _path(path)
     kind = _kind(path)
     out = split(ds) if split_complex else ds.copy(deep=False)
     for name in out.variables:
@@ -109,7 +115,7 @@ def save_blocks(
     rest : function
         The dataset without that variable, asked for when all blocks have been written.
     """
-    path = validate.as_path(path)
+    path = _path(path)
     kind = _kind(path)
     variable = BlockedVariable(name, sizes, chunks, dict(label(name)), blocks)
 
@@ -138,7 +144,7 @@ def load(path: str | Path) -> xr.Dataset:
         No such file, an unknown ending, or a file that is damaged, cut off, or of another kind: names it, the variable,
         and what is wrong.
     """
-    path = validate.as_path(path)
+    path = _path(path)
     ds = read_settled(path, _reader(_kind(path)))
     for name in ds.variables:
         with contextlib.suppress(KeyError):
