@@ -190,11 +190,15 @@ class _Search:
 
 
 def _bent_solution(search: _Search) -> Solution:
-    """Widen the window, or the band where its edge is what is missing, until two bent paths agree."""
+    """Widen the window, or the band where its edge is what is missing, until two bent paths agree.
+
+    Errors are over the largest |p| of each plane. Where that lies far outside of the window, what is asked for is still made as
+    right by its own size as some thousand plane waves make it.
+    """
     s, checks, rtol = search.scene, search.checks, search.rtol
     best: Solution | None = None
     shrinks = 2 if is_lossless(s) else 6  # on the axis itself their number does not fall
-    in_vain, looked = 0, False
+    in_vain, asked = 0, None
     for _ in range(ATTEMPTS):
         if search.too_wide():
             break
@@ -212,13 +216,16 @@ def _bent_solution(search: _Search) -> Solution:
         if error.max() > rtol and checks.dark is None:
             checks = judge.with_dark_planes(checks)
             error, edge = judge.difference(checks, one, two)
-        if error.max() > rtol and best is not None and not looked:  # a wider window alone did not do
-            looked, checks = True, elsewhere.with_wider_look(s, checks, search.reach, plan, found)
+        if error.max() > rtol and best is not None:  # a wider window alone did not do
+            if asked is None:
+                asked, checks = checks, elsewhere.with_wider_look(s, checks, search.reach, plan, found)
             error, edge = judge.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
             best = Solution(line, error, circles=bool(found.poles), amplitudes=one.amplitudes)
         in_vain = in_vain + 1 if stuck else 0
+        if error.max() <= rtol and asked is not None:
+            return _good_by_itself(search, asked, best)
         if error.max() <= rtol or in_vain > 3:
             break
         if edge > 0.3 * rtol:
@@ -234,6 +241,33 @@ def _bent_solution(search: _Search) -> Solution:
         raise ValueError(search.refusal())
     if best is None:
         raise ValueError(_too_many(rtol))
+    return best
+
+
+#: How often a contour that serves by a peak far outside is widened for what is asked for, and the most plane waves it may have then.
+WIDENED, MOST_WIDENED = 5, 5_000
+
+
+def _good_by_itself(search: _Search, checks: Checks, best: Solution) -> Solution:
+    """Widen a contour that serves by the plane's peak far outside of the window until it serves by the largest |p| inside, if it
+    soon does."""
+    before = math.inf
+    for _ in range(WIDENED):
+        line, second = search.lines()
+        one, two = judge.sampled(checks, line, False), judge.sampled(checks, second, True)
+        error, edge = judge.difference(checks, one, two)
+        size = float(error.max())
+        if size <= search.rtol:
+            return Solution(line, error, circles=bool(search.found.poles), amplitudes=one.amplitudes)
+        plan = search.plan
+        more = 1.5 * math.log(min(size, 1e6) / (0.1 * search.rtol)) / plan.depth
+        if (size < 1 and size > 0.1 * before) or edge > 0.3 * search.rtol:
+            break
+        if size < before:
+            best = best._replace(line=line, circles=bool(search.found.poles), amplitudes=one.amplitudes)
+        before, search.plan = size, plan._replace(window=plan.window + more)
+        if search.plan.other().nodes > MOST_WIDENED:
+            break
     return best
 
 
