@@ -158,9 +158,11 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
     # Gauss panels over propagating waves are wider than the step of a trapezoid rule
-    first_node = math.pi / spectral.plan_bent(reach, rtol).window if fan.beam.entire else 0.2 * reach.branch
+    wide = min(0.2 * reach.branch, math.sqrt(2 * s.k0 / max(reach.path, 1e-9)))
+    first_node = math.pi / spectral.plan_bent(reach, rtol).window if fan.beam.entire else wide
     near = origin.around(np.array([first_node]))
-    h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is not calm
+        h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
     allowed = max(0.01 * rtol, 30 * max(noise, spectral.EPS))
     sharp = math.inf

@@ -42,6 +42,7 @@ def nearest_singularity(transfer: Transfer, z: np.ndarray, radius: float, k0: fl
     """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular on any plane; inf if all."""
     count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
     radii = radius * 4.0 ** -np.arange(count)
-    calm = np.all(is_calm(transfer(around(radii), z), allowed), axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        calm = np.all(is_calm(transfer(around(radii), z), allowed), axis=0)
     disturbed = np.flatnonzero(~calm)
     return float(radii[min(disturbed[-1] + 1, count - 1)]) if disturbed.size else math.inf

@@ -341,7 +341,7 @@ QUESTIONS = [
         ("before", field(slab=bp.Slab(CELL, before=v)))
         for v in (bp.Fluid(-1, -1e5), bp.Fluid(-1, 1e5), bp.Fluid(1, 1e5, INF))
     ],
-    ("after", field(slab=bp.Slab(CELL, after=bp.Fluid(-1, -1e5)))),
+    ("after", lambda: bp.beam_width(bp.Slab(CELL, after=bp.Fluid(-1, -1e5)), bp.GaussianBeam(0.1), 2500.0)),
     ("slab", width(slab=CELL)),
     ("beam", width(beam=None)),
     *[("frequency", width(frequency=v)) for v in (NAN, 0, [])],

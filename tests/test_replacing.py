@@ -53,6 +53,7 @@ def _write_on(path, first, stop, alone):
     number = first
     while not stop.is_set():
         bp.save(version(number), path)
+        time.sleep(0.02)  # on a busy machine a reader may never see the end of a file that is replaced without a pause
         number += 2
 
 

@@ -14,7 +14,7 @@ import xarray as xr
 from .whole import scratch_of
 
 #: Times to begin again, and to wait for a name that a writer is just giving away [s].
-TRIES, PAUSE, PATIENCE = 200, 0.01, 2.0
+TRIES, PAUSE, PATIENCE = 1000, 0.01, 2.0
 #: Values may be this much larger than what a file stores of them, or small.
 EXPANSION, HARMLESS = 2**16, 2**28
 
