@@ -274,7 +274,8 @@ def _good_by_itself(search: _Search, checks: Checks, best: Solution) -> Solution
 def _too_many(rtol: float) -> str:
     return (
         f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "
-        "edge does not end on its own launch plane: ask for z a little behind z0)"
+        "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
+        "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
     )
 
 
