@@ -343,6 +343,19 @@ class Profile(_Tilted):
         S = self.spacing * _spectral_sum(kx, self.x, tilted).T
         return np.where(np.abs(kx.real - tilt[:, None]) <= np.pi / self.spacing, S, 0)
 
+    def spectral_rounding(self, kx: np.ndarray, k0: float) -> tuple[np.ndarray, np.ndarray]:
+        """What rounding of positions and phases leaves unknown of S(kx): root mean square [Pa m], and as white noise [Pa m^(1/2)].
+
+        Every p_j exp(-i k x_j) errs by itself, by up to EPS (1 + |k x_j|) |p_j|, k = kx - k0 sin(angle). It counts where a slab
+        lets through only such kx at which the samples cancel to next to nothing.
+        """
+        k = np.abs(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
+        size, far = np.abs(self.p), np.abs(self.x)
+        moments = [float(np.sqrt(np.sum((size * far**m) ** 2))) for m in (0, 1)]
+        largest = [float(np.max(size * far**m)) for m in (0, 1)]
+        eps, dx = np.finfo(float).eps, self.spacing
+        return eps * dx * (moments[0] + k * moments[1]), eps * math.sqrt(dx) * (largest[0] + k * largest[1])
+
     def shifts_smoothly(self, tolerance: float) -> bool:
         """Whether the samples' spectrum has vanished where it ends, at the Nyquist wavenumber."""
         lo, hi = self.band(0.0, tolerance)

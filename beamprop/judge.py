@@ -62,7 +62,21 @@ def check_points(
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     own = centre + source * np.linspace(-1, 1, around)
-    return np.concatenate([xs, own]), np.unique([*pick, *near])
+    return np.concatenate([xs, own, _towards_ends(x, xs, source)]), np.unique([*pick, *near])
+
+
+def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
+    """Positions that lie ever closer towards both ends, down to the source's size, where those picked are further apart.
+
+    What a finite step in kx adds are images of the beam, about as wide as the source, that come in from both ends.
+    """
+    apart = float(np.max(np.diff(picked), initial=0.0))
+    if apart <= 2 * source:
+        return np.empty(0)
+    steps = np.geomspace(source, apart, 2 + math.ceil(4 * math.log2(apart / source)))
+    wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
+    order = np.sort(x)
+    return order[np.clip(np.searchsorted(order, wanted), 0, x.size - 1)]
 
 
 # --- dark planes ------------------------------------------------------------------------------------------
@@ -284,9 +298,10 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     largest = np.maximum(largest, checks.bright)
     seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)
+    source = _source_rounding(checks.k0, fan, one)
     edge = first_edge = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):
-        error = np.max(np.abs(a - b), axis=2) / scale
+        error = (np.max(np.abs(a - b), axis=2) + source) / scale
         if fan.beam.entire:
             mix = None if fan.mix is None else np.abs(fan.mix)
             edge, cut = (
@@ -308,6 +323,24 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
 def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
     """w S(k) and w S(-k) about the source's middle: (B, n) each."""
     return spectral.amplitudes(line, lambda k: fan.spectra(k, k0), fan.beam.centre)
+
+
+def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
+    """What rounding of a sampled source brings to each plane, on both lines alike; (Z,).
+
+    The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
+    (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
+    """
+    if not hasattr(fan.beam, "spectral_rounding"):
+        return np.zeros(one.h.shape[0])
+    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), []
+    ends = {float(fan.angles.min()), float(fan.angles.max())}
+    for beam in (fan.at(angle) for angle in ends):
+        for k in (one.line.k, -one.line.k):
+            coherent, white = beam.spectral_rounding(k, k0)
+            with np.errstate(over="ignore", invalid="ignore"):
+                bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
+    return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # the largest of many positions
 
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:

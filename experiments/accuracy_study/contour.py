@@ -74,11 +74,12 @@ def _samples(lo: float, hi: float, g: Grading, ray: bool) -> np.ndarray:
 
 
 def real_nodes(
-    m: Medium, length: float, finer: float, pinched: bool = False
+    m: Medium, length: float, finer: float, pinch: float = math.inf
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Panels over 0 < kx < k0 in alpha, kx = k0 sin(alpha), graded towards the branch points inside; and kz.
 
-    Towards 0 too, where something is near it (`pinched`).
+    Towards 0 too, where a pole or branch point is as near to it as `pinch`. Finer panels are finer there as well: two numbers
+    of panels that share their graded ends agree on the same error at a resonance between them.
 
     Not towards k0, where alpha itself takes the root out: a kx that rounds to k0 has no response.
     """
@@ -86,8 +87,10 @@ def real_nodes(
     nodes, weights, across = [], [], []
     for lo, hi in itertools.pairwise(stops):
         fine = np.linspace(lo, hi, math.ceil(finer * (4 + m.k0 * length / 6)))
-        steep = (hi - lo) / 2 * 2.0 ** -np.arange(1, 26)
-        graded = [lo + steep] * int(lo > 0 or pinched) + [hi - steep] * int(hi < stops[-1])
+        ratio = 2 ** (1 / finer)  # of neighbouring panels
+        end = min(2.0**-26, 1e-3 * pinch / m.k0)
+        steep = (hi - lo) * ratio ** -np.arange(math.log(2, ratio), math.log(1 / end, ratio))
+        graded = [lo + steep] * int(lo > 0 or pinch < math.inf) + [hi - steep] * int(hi < stops[-1])
         a, w = panels(np.unique(np.concatenate([fine, *graded])))
         nodes.append(m.k0 * np.sin(a))
         weights.append(m.k0 * np.cos(a) * w)

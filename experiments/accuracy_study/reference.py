@@ -248,7 +248,7 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     for step in range(5):
         if s.rotated:
             length = s.extent + s.reach + 2 * s.path + s.m.thickness
-            k, w, kz = real_nodes(s.m, length, 1.5 ** (2 * step), _pinch(s) < math.inf)
+            k, w, kz = real_nodes(s.m, length, 1.5 ** (2 * step), _pinch(s))
         elif sided:
             (k, w), kz = _sided_nodes(s, step), None
         else:
@@ -277,7 +277,12 @@ def _worst(t: Truth) -> float:
 
 
 def _agreement(
-    s: _Setting, p: np.ndarray, before: np.ndarray, elsewhere: np.ndarray, bright: np.ndarray, wrong: int
+    s: _Setting,
+    p: np.ndarray,
+    before: np.ndarray,
+    elsewhere: np.ndarray,
+    bright: np.ndarray,
+    wrong: int,
 ) -> Truth:
     """What two quadratures say together."""
     scale = np.maximum(np.abs(p).max(axis=1), elsewhere)

@@ -9,6 +9,9 @@ import numpy as np
 
 import beamprop as bp
 
+#: The most products of kx and samples that are summed in long double.
+MOST_LONG = 30_000_000
+
 
 class Source:
     """S(kx) of a beam from its definition, relative to its middle."""
@@ -31,10 +34,19 @@ class Source:
         if isinstance(b, bp.Slits):
             edges = [(m - b.width / 2, m + b.width / 2) for m in b.positions]
             return sum((np.exp(-1j * q * lo) - np.exp(-1j * q * hi)) / (1j * q) for lo, hi in edges)
-        out = np.zeros(k.shape, complex)
-        for x, p in zip(b.x - b.centre, b.p, strict=True):
-            out += p * np.exp(-1j * q * x)
-        return np.where(np.abs(q.real) <= np.pi / b.spacing, out * b.spacing, 0)
+        return np.where(np.abs(q.real) <= np.pi / b.spacing, self._sampled(k), 0)
+
+    def _sampled(self, k: np.ndarray) -> np.ndarray:
+        """The sum over a profile's samples, in long double: where a slab lets only such kx through at which they cancel to next
+        to nothing, rounding of each is what arrives."""
+        b = self.beam
+        real, kind = (np.longdouble, np.clongdouble) if k.size * b.x.size < MOST_LONG else (np.float64, np.complex128)
+        spacing = (real(b.x[-1]) - real(b.x[0])) / (b.x.size - 1)
+        q = k.astype(kind) - real(self.k0) * np.sin(real(b.angle) * (2 * np.arcsin(real(1)) / 180))
+        out = np.zeros(k.shape, kind)
+        for j, p in enumerate(b.p):
+            out += p * np.exp(kind(-1j) * q * ((j - real(b.x.size - 1) / 2) * spacing))
+        return (out * spacing).astype(complex)
 
     def band(self, tolerance: float) -> float:
         """|k| beyond which S is negligible."""
