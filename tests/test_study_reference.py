@@ -232,14 +232,15 @@ def test_a_resonance_in_what_a_nearly_soft_layer_lets_through():
     # |h| goes from 0.2 to 1 and back below kx = 1e-4 k0: panels twice as long as their neighbours do not resolve it.
     cell = bp.Cell([bp.Layer(bp.AIR, 0.4388), bp.Layer(bp.Fluid(3.6e-9, 65668), 0.1291)])
     slab, beam = bp.Slab(cell), bp.GaussianBeam(0.0944, z0=-0.0442, form="rotated")
-    case = case_of(slab, beam, np.linspace(-0.05, 0.05, 11), [0.4388])._replace(frequency=1683.0)
+    case = case_of(slab, beam, np.linspace(-0.05, 0.05, 11), [0.2, 0.4388], "nearly dark planes", 1e-5)
+    case = case._replace(frequency=1683.0)
     m = Medium(slab, 1683.0)
     angle, w = panels(np.unique(np.concatenate([[0], np.pi / 2 * 1.05 ** -np.arange(0.0, 500)])))
     k, kz = m.k0 * np.sin(angle) + 0j, m.k0 * np.cos(angle)
     source = Source(beam, m.k0)
     expected = reference.field_sum(source, lambda kk: m.response(kk, case.z, beam.z0), k, kz * w, kz, case.x)
     found = truth(case)
-    np.testing.assert_allclose(found.p, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+    assert np.all(np.abs(found.p - expected).max(axis=1) < 1e-10 * np.abs(expected).max(axis=1))
 
 
 def test_an_origin_far_away_changes_nothing():
