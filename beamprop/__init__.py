@@ -16,30 +16,21 @@ from ._version import __version__
 
 if TYPE_CHECKING:
     from . import fem, plot
-    from .beam import GaussianBeam, Profile, Slits
-    from .blocks import save_field
-    from .comparison import compare
-    from .comsol import read_comsol, to_grid
-    from .datasets import provenance
-    from .homogenize import lmmd_emt, lmmd_emt_slab, standard_emt
-    from .media import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
-    from .questions import (
-        AccuracyWarning,
-        beam_measures,
-        beam_width,
-        bloch,
-        field,
-        fwhm,
-        guided_modes,
-        scattering,
-    )
-    from .storage import load, save
+    from .api import AccuracyWarning, beam_measures, beam_width, bloch, field, fwhm, guided_modes, scattering
+    from .api.save_field import save_field
+    from .comparison.fields import compare
+    from .io.comsol import read_comsol, to_grid
+    from .io.datasets import provenance
+    from .io.storage import load, save
+    from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
+    from .media.structures import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
+    from .sources.beams import GaussianBeam, Profile, Slits
 
 _HOMES = {
-    "media": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
-    "homogenize": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
-    "beam": ("GaussianBeam", "Profile", "Slits"),
-    "questions": (
+    "media.structures": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
+    "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
+    "sources.beams": ("GaussianBeam", "Profile", "Slits"),
+    "api": (
         "AccuracyWarning",
         "beam_measures",
         "beam_width",
@@ -49,11 +40,11 @@ _HOMES = {
         "guided_modes",
         "scattering",
     ),
-    "comparison": ("compare",),
-    "comsol": ("read_comsol", "to_grid"),
-    "datasets": ("provenance",),
-    "storage": ("load", "save"),
-    "blocks": ("save_field",),
+    "api.save_field": ("save_field",),
+    "comparison.fields": ("compare",),
+    "io.comsol": ("read_comsol", "to_grid"),
+    "io.datasets": ("provenance",),
+    "io.storage": ("load", "save"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 _MODULES = ("fem", "plot")

@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import fan, judge, lines, scene, sections, spectral, transfers
+from beamprop.contour import choose as contour_choice
+from beamprop.contour import error_estimate, paths
+from beamprop.media import sampled
+from beamprop.profiles import sections
+from beamprop.response import transfer_function
+from beamprop.sources import angles
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
@@ -100,19 +105,23 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
     assert np.abs(truth.p[: x.size]).max() < 1e-6 * peak
     allowed = 3 * float(window.error_estimate) + float(truth.error_estimate)
     assert np.abs(window.p - truth.p[: x.size]).max() < min(1e-8, allowed) * peak
-    s = scene.scene(slab, F)
-    reach = spectral.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    s = sampled.scene(slab, F)
+    reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes = np.array([-20.0, slab.thickness])
-    found = judge.survey(s, fan.single(beam), transfers.through(s, beam.z0), x, planes, reach, 1e-8).bright[0, 1]
+    found = error_estimate.survey(
+        s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
+    ).bright[0, 1]
     assert 0.3 * peak < found < 1.1 * peak
 
 
 def test_a_beam_that_lands_in_the_window_is_not_looked_for():
-    s = scene.scene(bp.Slab.uniform(bp.AIR, 0.1), F)
-    reach = spectral.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    s = sampled.scene(bp.Slab.uniform(bp.AIR, 0.1), F)
+    reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes, x = np.array([0.0, 0.1]), np.linspace(-1, 1, 11)
     beam = bp.GaussianBeam(0.3, 30.0, z0=-1.0)
-    assert not judge.survey(s, fan.single(beam), transfers.through(s, beam.z0), x, planes, reach, 1e-8).bright.any()
+    assert not error_estimate.survey(
+        s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
+    ).bright.any()
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8])
@@ -165,11 +174,13 @@ def test_beams_from_far_away_through_a_slab(medium):
 @pytest.mark.parametrize("loss", [(0.05, 0.0), (0.05 + 0.05j, 0.025)])
 def test_lower_accuracy_is_cheaper(loss, points):
     """Plane waves of the line that is chosen: fewer the larger rtol is."""
-    s = scene.scene(bp.Slab(bp.lmmd_cell(*loss), 450), F)
+    s = sampled.scene(bp.Slab(bp.lmmd_cell(*loss), 450), F)
     x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
     sizes = []
     for rtol in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
-        found = lines.choose_line(s, fan.single(bp.GaussianBeam(0.096, 30.0)), transfers.through(s, 0.0), x, z, rtol)
+        found = contour_choice.choose_line(
+            s, angles.single(bp.GaussianBeam(0.096, 30.0)), transfer_function.through(s, 0.0), x, z, rtol
+        )
         assert found.error[0] <= rtol
         sizes.append(found.line.k.size)
     assert sizes == sorted(sizes)
@@ -179,13 +190,13 @@ def test_lower_accuracy_is_cheaper(loss, points):
 @pytest.mark.parametrize("ask", [bp.beam_width, bp.beam_measures])
 def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
     """As `field` does: one category of warning, with the estimate."""
-    choose = lines.choose_line
+    choose = contour_choice.choose_line
 
     def worse(*args):
         solution = choose(*args)
         return solution._replace(error=solution.error + 3e-4)
 
-    monkeypatch.setattr(lines, "choose_line", worse)
+    monkeypatch.setattr(contour_choice, "choose_line", worse)
     monkeypatch.setattr(
         sections, "_measured", lambda first, *_: (sections.Measures(*5 * [np.zeros(1)]), np.zeros(1, bool))
     )
@@ -271,14 +282,14 @@ def warned_field(beam, xs):
 
 def test_fields_of_many_waves_and_points_take_bounded_memory():
     """100 000 waves on 2048 points: the matrix of their phases, 3 GB, is never whole."""
-    from beamprop import spectral
+    from beamprop.contour import paths
 
     k = np.linspace(0, 100, 5000).astype(complex)
     x = np.linspace(-1, 1, 999)
     h, right = np.exp(-k)[None], np.exp(-k / 10)
-    line = spectral.Line(k, np.ones(k.size))
+    line = paths.Line(k, np.ones(k.size))
     whole = (h * right) @ np.exp(1j * np.outer(k, x)) + (h * right) @ np.exp(-1j * np.outer(k, x))
-    np.testing.assert_allclose(spectral.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
+    np.testing.assert_allclose(paths.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
 
 
 # --- nothing that is not finite ---------------------------------------------------------------------------

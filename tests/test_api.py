@@ -8,7 +8,8 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
-from beamprop import datasets, lines
+from beamprop.contour import choose as contour_choice
+from beamprop.io import datasets
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -203,13 +204,13 @@ def test_progress_wraps_the_work():
 
 def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
     """An estimate above rtol is reported in the dataset and warned of by a category of its own."""
-    choose = lines.choose_line
+    choose = contour_choice.choose_line
 
     def worse(*args):
         solution = choose(*args)
         return solution._replace(error=solution.error + 3e-5)
 
-    monkeypatch.setattr(lines, "choose_line", worse)
+    monkeypatch.setattr(contour_choice, "choose_line", worse)
     with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-05 .* above the asked rtol 1\.0e-08"):
         ds = bp.field(SLAB, BEAM, F, X, [0.0])
     assert ds.error_estimate == pytest.approx(3e-5, rel=1e-2)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beamprop._plot_comparison import comparison
-from beamprop.comparison import compare
-from beamprop.comsol import read_comsol
+from beamprop.comparison.fields import compare
+from beamprop.io.comsol import read_comsol
+from beamprop.plot.comparison import comparison
 
 matplotlib.use("Agg")
 

@@ -7,7 +7,7 @@ import xarray as xr
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from beamprop.comsol import read_comsol, to_grid
+from beamprop.io.comsol import read_comsol, to_grid
 
 X, Z = np.linspace(-0.2, 0.3, 6), np.linspace(-0.1, 0.4, 4)
 
@@ -511,7 +511,7 @@ def test_every_variable_has_units_and_the_file_is_recorded(tmp_path):
     ds = read_comsol(path)
     for name in ds.variables:
         assert {"units", "long_name"} <= set(ds[name].attrs), name
-    from beamprop.datasets import provenance
+    from beamprop.io.datasets import provenance
 
     record = provenance(ds)
     assert record["question"] == "read_comsol"

@@ -7,9 +7,9 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop.media import materials, slab_values
+from beamprop.media.structures import materials, slab_values
 from beamprop.response import solve, solve_checked
-from beamprop.response.waves import Stack, reflect
+from beamprop.response.reflection import Stack, reflect
 
 F = 2500.0
 LAMBDA = 343 / F

@@ -5,37 +5,37 @@ import pytest
 from sided import BULK, K0, RHO, F
 
 import beamprop as bp
-from beamprop import judge, spectral
-from beamprop.fan import Fan, single
-from beamprop.scene import is_lossless, scene, up_to_wall, with_loss
+from beamprop.contour import error_estimate, paths
+from beamprop.media.sampled import is_lossless, scene, up_to_wall, with_loss
+from beamprop.sources.angles import Fan, single
 
 
 def test_a_grid_and_what_positions_are_off_it():
     x = np.linspace(-1, 1, 101)
-    assert spectral.grid_of(x).offsets is None
-    assert spectral.grid_of(x).even == pytest.approx(x, abs=1e-15)
+    assert paths.grid_of(x).offsets is None
+    assert paths.grid_of(x).even == pytest.approx(x, abs=1e-15)
     moved = x + 1e-4 * np.sin(np.arange(101)) * (x[1] - x[0])
-    grid = spectral.grid_of(moved)
+    grid = paths.grid_of(moved)
     assert grid.even + grid.offsets == pytest.approx(moved, abs=1e-15)
     assert grid.unevenness == np.abs(moved - grid.even).max() > 0
-    assert spectral.grid_of(np.geomspace(1, 2, 101)).step == 0
-    assert spectral.grid_of(np.array([0.3])).step == 0
+    assert paths.grid_of(np.geomspace(1, 2, 101)).step == 0
+    assert paths.grid_of(np.array([0.3])).step == 0
 
 
 def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     """Of a few plane waves, term by term; what offsets of 1e-9 m cost, (k offset)^2/2, is 2e-13 here."""
     n, dx, rng = 256, 1 / 128, np.random.default_rng(1)
     x = dx * (np.arange(200) - 100) + 1e-9 * rng.standard_normal(200)
-    grid = spectral.grid_of(x)
+    grid = paths.grid_of(x)
     step = 2 * np.pi / (n * grid.step)
     k = step * np.arange(-20, 60) - 0.3j
-    line = spectral.Line(k, np.ones(k.size), step, -20, 0.3, 1.0)
+    line = paths.Line(k, np.ones(k.size), step, -20, 0.3, 1.0)
     h = rng.standard_normal((3, k.size)) + 0j
     right, left = rng.standard_normal((2, k.size)) + 0j
     turn = np.exp(1j * np.outer(k, x))
     truth = (h * right) @ turn + (h * left) @ (1 / turn)
     assert grid.offsets is not None
-    p = spectral.grid_sum(line, h, right, left, grid, n)
+    p = paths.grid_sum(line, h, right, left, grid, n)
     assert np.abs(p - truth).max() < 3e-12 * np.abs(truth).max()
 
 
@@ -48,8 +48,8 @@ def test_a_graded_contour_integrates_what_is_sharp_at_the_origin(pole):
     """The integral over s > 0 of 2b/(b^2 + s^2) exp(-s^2/2), b = pole: pi erfc(b/sqrt 2) exp(b^2/2)."""
     from scipy.special import erfcx
 
-    plan = spectral.BentPlan(1.0, 60.0, 9.0, 1.0 / spectral.SLOPE, sharp=pole / 2, grading=12.0)
-    found = half_line(spectral.bent_line(plan), lambda k: 2 * pole / (pole**2 + k**2) * np.exp(-(k**2) / 2))
+    plan = paths.BentPlan(1.0, 60.0, 9.0, 1.0 / paths.SLOPE, sharp=pole / 2, grading=12.0)
+    found = half_line(paths.bent_line(plan), lambda k: 2 * pole / (pole**2 + k**2) * np.exp(-(k**2) / 2))
     assert found == pytest.approx(np.pi * erfcx(pole / np.sqrt(2)), rel=1e-10)
 
 
@@ -59,9 +59,9 @@ def test_a_contour_that_crosses_passes_poles_on_both_sides():
     def f(k, a):
         return 2 * k / (k**2 - a**2) * np.exp(-(k**2) / 8)
 
-    plan = spectral.BentPlan(0.6, 400.0, 18.0, 1.5, crossing=5.0, gap=1.0)
+    plan = paths.BentPlan(0.6, 400.0, 18.0, 1.5, crossing=5.0, gap=1.0)
     straight = plan._replace(crossing=np.inf, gap=np.inf)
-    crossing, below = spectral.bent_line(plan), spectral.bent_line(straight)
+    crossing, below = paths.bent_line(plan), paths.bent_line(straight)
     assert np.all(crossing.k.imag[crossing.k.real < 3.5] < 0)
     assert np.all(crossing.k.imag[crossing.k.real > 6.5] > 0)
     near, far = 3.0, 7.0
@@ -76,13 +76,13 @@ def test_how_near_a_pole_lies_to_the_origin(distance):
     """A response with poles at +-distance exp(i pi/4): the search ends between a sixteenth of that and all of it."""
     beam, x, z = bp.GaussianBeam(0.5, 0, 0, -0.1), np.linspace(-1, 1, 31), np.array([0.1])
     s = scene(bp.Slab.uniform(bp.AIR, 0.1), F)
-    reach = spectral.Reach(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
+    reach = paths.Reach(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
 
     def survey(square):
         def transfer(k, z, shift=0.0):
             return np.broadcast_to(square / (square - k**2) if square else np.cos(k), (np.size(z), k.size)) + 0j
 
-        return judge.survey(s, single(beam), transfer, x, z, reach, 1e-8).sharp
+        return error_estimate.survey(s, single(beam), transfer, x, z, reach, 1e-8).sharp
 
     assert survey(0) == np.inf
     assert distance / 16 < survey(1j * distance**2) <= distance

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import modes, roots
-from beamprop.scene import last_branch, scene
+from beamprop.media.sampled import last_branch, scene
+from beamprop.modes import argument_principle, guided
 
 STEEL = bp.Fluid.from_speed(7800.0, 5900.0)  # as fluids: density and speed of longitudinal waves
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
@@ -28,12 +28,12 @@ def polynomial(zeros, turns):
 @pytest.mark.parametrize("beside", [1e-2, 1e-6])
 def test_seventy_five_zeros_beside_a_path(turns, beside):
     """On a line just inside of the path, or just outside, evenly or crowding towards the end of a band."""
-    box = roots.Box(1.0, 9.0, -0.5, 0.5)
+    box = argument_principle.Box(1.0, 9.0, -0.5, 0.5)
     for band in (3.0 + 4.0 * np.arange(75) / 75, 5.0 - 2.0 * np.cos(np.pi * (np.arange(75) + 0.5) / 75)):
         for count, height in ((75, 0.5 - beside), (0, 0.5 + beside)):
             f = polynomial(band + 1j * height, turns)
             for nodes in (24, 61):
-                assert roots.winding(f, box.outline(nodes), 1e-12) == count
+                assert argument_principle.winding(f, box.outline(nodes), 1e-12) == count
 
 
 @pytest.mark.parametrize("seed", range(30))
@@ -46,11 +46,11 @@ def test_random_crowds_in_a_fast_function(seed):
             for n in rng.integers(1, 40, 6)
         ]
     )
-    box = roots.Box(2.0, 8.0, -0.4, 0.6)
+    box = argument_principle.Box(2.0, 8.0, -0.4, 0.6)
     inside = sum(box.holds(z, 0.0) for z in zeros)
     f = polynomial(zeros, rng.uniform(-2000, 2000))
-    assert roots.winding(f, box.outline(48), 1e-12, thorough=True) == inside
-    assert roots.winding(f, box.outline(48), 1e-12) == inside
+    assert argument_principle.winding(f, box.outline(48), 1e-12, thorough=True) == inside
+    assert argument_principle.winding(f, box.outline(48), 1e-12) == inside
 
 
 @pytest.mark.parametrize(
@@ -65,10 +65,10 @@ def test_the_lossless_modulated_slab_at_high_frequencies(frequency, highest):
     assert np.all(np.abs(kx[:, None] - kx)[~np.eye(kx.size, dtype=bool)] > 1e-6)
     assert np.all(ds.residual < 1e-10)
     s = scene(slab, frequency)
-    edges = np.linspace(last_branch(s) * (1 + modes.BESIDE), highest * s.k0, 12)
-    parts = [roots.Box(a, b, -0.5 * s.k0, 0.5 * s.k0) for a, b in itertools.pairwise(edges)]
-    f = modes.dispersion_of(s)
-    assert sum(roots.winding(f, part.outline(200), 1e-9 * highest * s.k0) for part in parts) == kx.size
+    edges = np.linspace(last_branch(s) * (1 + guided.BESIDE), highest * s.k0, 12)
+    parts = [argument_principle.Box(a, b, -0.5 * s.k0, 0.5 * s.k0) for a, b in itertools.pairwise(edges)]
+    f = guided.dispersion_of(s)
+    assert sum(argument_principle.winding(f, part.outline(200), 1e-9 * highest * s.k0) for part in parts) == kx.size
 
 
 @pytest.mark.parametrize("loss", [0.0, 1e-4])
@@ -90,13 +90,13 @@ def test_a_lattice_of_seventy_five_layers_of_water_in_steel(thickness, frequency
 def test_counts_that_differ_are_refused(monkeypatch):
     """Two outlines that disagree, or more changes of sign than modes: never a list that may lack some."""
     slab = bp.Slab.uniform(bp.Fluid(1.25 * 3, bp.AIR.bulk_modulus), 0.3)
-    real = modes.winding
+    real = guided.winding
     with monkeypatch.context() as m:
-        m.setattr(modes, "winding", lambda f, path, *a, **k: real(f, path, *a, **k) + (path.size > 150))
+        m.setattr(guided, "winding", lambda f, path, *a, **k: real(f, path, *a, **k) + (path.size > 150))
         with pytest.raises(ValueError, match=r"kx_over_k0_max: expected a strip in which modes can be counted, got"):
             bp.guided_modes(slab, 2500.0)
     with monkeypatch.context() as m:
-        m.setattr(modes, "winding", lambda *a, **k: 1)
+        m.setattr(guided, "winding", lambda *a, **k: 1)
         with pytest.raises(ValueError, match=r"got 1, 1 and no fewer than \d modes at 2500"):
             bp.guided_modes(slab, 2500.0)
 
@@ -108,6 +108,6 @@ def test_a_zero_that_leaves_its_interval_is_not_taken_twice(monkeypatch):
         return np.sin(k), np.zeros(k.shape)
 
     want = np.pi * np.arange(1, 7)
-    np.testing.assert_allclose(np.real(roots.real_zeros(f, 0.5, 21.0, 40)), want, rtol=1e-12)
-    monkeypatch.setattr(roots, "refine", lambda f, k, reach: (complex(np.pi), 0.0))
-    assert len(roots.real_zeros(f, 0.5, 21.0, 40)) == 1
+    np.testing.assert_allclose(np.real(argument_principle.real_zeros(f, 0.5, 21.0, 40)), want, rtol=1e-12)
+    monkeypatch.setattr(argument_principle, "refine", lambda f, k, reach: (complex(np.pi), 0.0))
+    assert len(argument_principle.real_zeros(f, 0.5, 21.0, 40)) == 1

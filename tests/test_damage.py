@@ -12,7 +12,7 @@ import pytest
 import zarr
 
 import beamprop as bp
-from beamprop.storage import seal
+from beamprop.io.storage import seal
 
 
 @pytest.fixture(scope="module")

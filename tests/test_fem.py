@@ -12,10 +12,10 @@ import pytest
 from fem_reference import periodic_field, relative_error
 
 from beamprop import fem
-from beamprop.beam import GaussianBeam, Profile, Slits
-from beamprop.datasets import provenance
 from beamprop.fem import solvers, strip
-from beamprop.media import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
+from beamprop.io.datasets import provenance
+from beamprop.media.structures import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
+from beamprop.sources.beams import GaussianBeam, Profile, Slits
 
 FREQUENCY = 2500.0
 WAVELENGTH = 343.0 / FREQUENCY

@@ -15,7 +15,7 @@ import xarray as xr
 import zarr
 
 import beamprop as bp
-from beamprop.storage import netcdf
+from beamprop.io.storage import netcdf
 
 
 @pytest.fixture

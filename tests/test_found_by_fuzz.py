@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
-from beamprop import propagate
+from beamprop.fields import evaluate
 
 SLAB = bp.Slab(bp.lmmd_cell(), 5)
 
@@ -98,7 +98,7 @@ def test_beams_that_only_huge_sums_would_find():
 def test_positions_as_many_as_plane_waves_need(monkeypatch):
     """A slit's edge has waves of a hundredth of a millimetre, which die on the way: the window has no positions for them."""
     sizes = []
-    plain = propagate.beam_sum
-    monkeypatch.setattr(propagate, "beam_sum", lambda s, b, sol, h, x: sizes.append(x.size) or plain(s, b, sol, h, x))
+    plain = evaluate.beam_sum
+    monkeypatch.setattr(evaluate, "beam_sum", lambda s, b, sol, h, x: sizes.append(x.size) or plain(s, b, sol, h, x))
     bp.beam_width(SLAB, bp.Slits(0.05, 0.2, 1, z0=-0.2), 2306.0, rtol=1e-4)
     assert 0 < max(sizes) < 5000

@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
-from beamprop.storage import netcdf
-from beamprop.storage.guarded import GuardedFile
+from beamprop.io.storage import netcdf
+from beamprop.io.storage.guarded import GuardedFile
 
 resource = pytest.importorskip("resource")
 

@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import beamprop as bp
-from beamprop import media, response, spectral
+from beamprop import response
+from beamprop.contour import paths
 from beamprop.conventions import outgoing_kz
+from beamprop.media import structures
 
 F = 2500.0
 OMEGA = 2 * np.pi * F
@@ -55,7 +57,7 @@ def amplitudes(slab, kx, z=None):
     """r, t and p at depths z inside, of one plane wave or an array of them."""
     f, kx = np.array([F]), np.atleast_1d(np.asarray(kx, complex))
     out = response.solve(
-        media.slab_values(slab, f),
+        structures.slab_values(slab, f),
         slab.before.at(f),
         slab.after.at(f),
         np.array([[OMEGA]]),
@@ -407,19 +409,19 @@ def test_pressure_and_velocity_are_continuous_at_every_face(slab):
 
 def line_and_sums():
     """An open line that fits an FFT of 720 points, a slab's response on it, and amplitudes on both sides of kx = 0."""
-    reach = spectral.Reach(K0, K0, 2.2 * K0, 0.8, 0.2, 0.3)
+    reach = paths.Reach(K0, K0, 2.2 * K0, 0.8, 0.2, 0.3)
     n, dx = 720, 0.005
-    line = spectral.open_line(spectral.plan_open(reach, 1e-8)._replace(window=n * dx))
+    line = paths.open_line(paths.plan_open(reach, 1e-8)._replace(window=n * dx))
     h = amplitudes(LOSSLESS, line.k, np.linspace(0.001, 0.05, 5))[2]
     beam = bp.GaussianBeam(0.05, 50.0, x0=0.1)
-    return line, h, *spectral.amplitudes(line, lambda k: beam.spectrum(k, K0), 0.1), (np.arange(240) - 130) * dx, n
+    return line, h, *paths.amplitudes(line, lambda k: beam.spectrum(k, K0), 0.1), (np.arange(240) - 130) * dx, n
 
 
 def test_the_fast_sum_is_the_matrix_product():
     """Two FFTs a plane and the plain sum over the same nodes give the same field."""
     line, h, right, left, x, n = line_and_sums()
     assert np.any(left)
-    fast, slow = spectral.fft_sum(line, h, right, left, x, n), spectral.direct_sum(line, h, right, left, x)
+    fast, slow = paths.fft_sum(line, h, right, left, x, n), paths.direct_sum(line, h, right, left, x)
     np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
 
 
@@ -428,8 +430,8 @@ def test_the_fast_sum_folds_a_band_wider_than_its_grid():
     line, h, right, left, x, n = line_and_sums()
     coarse, few = x[::20], n // 20
     assert line.k.size > few
-    fast = spectral.fft_sum(line, h, right, left, coarse, few)
-    slow = spectral.direct_sum(line, h, right, left, coarse)
+    fast = paths.fft_sum(line, h, right, left, coarse, few)
+    slow = paths.direct_sum(line, h, right, left, coarse)
     np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
 
 

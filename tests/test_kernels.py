@@ -6,23 +6,18 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop import (
-    conventions,
-    fan,
-    fft,
-    judge,
-    lines,
-    planes,
-    products,
-    propagate,
-    response,
-    scene,
-    sections,
-    spectral,
-)
-from beamprop.media import layer_values
-from beamprop.response import cells, inside, march
-from beamprop.response import layers as one
+from beamprop import conventions, response
+from beamprop.arrays import fft, matmul
+from beamprop.contour import choose as contour_choice
+from beamprop.contour import error_estimate, paths
+from beamprop.fields import evaluate, low_rank
+from beamprop.media import sampled
+from beamprop.media.structures import layer_values
+from beamprop.profiles import sections
+from beamprop.response import cell as cell_kernels
+from beamprop.response import interior, recursion
+from beamprop.response import layer as one
+from beamprop.sources import angles as source_angles
 
 SEEDS = range(12)
 RTOL = 1e-13
@@ -131,7 +126,7 @@ def test_cell_matrix(seed, count):
     frequency = np.array([1500.0, 2500.0, 3100.0])
     layers, omega = layer_values(random_cell(rng), frequency), 2 * np.pi * frequency[:, None]
     kx = random_kx(rng, count, 3)
-    m = cells.cell_matrix(layers, omega, kx)
+    m = cell_kernels.cell_matrix(layers, omega, kx)
     wanted = plain_cell(layers, omega, kx)
     assert m.growth is None
     for found, (i, j) in zip(m[1:5], ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
@@ -141,9 +136,9 @@ def test_cell_matrix(seed, count):
 def test_the_polynomial_serves_the_papers_cell_and_refuses_a_thick_one():
     frequency = np.array([2500.0])
     omega, kx2 = 2 * np.pi * frequency[:, None], np.linspace(0, 200, 300)[None] ** 2 + 0j
-    assert cells._fitted(layer_values(bp.lmmd_cell(), frequency), omega, kx2) is not None
-    assert cells._fitted(layer_values(bp.lmmd_cell(eta=0.5), frequency), omega, kx2) is None
-    assert cells._fitted(layer_values(bp.lmmd_cell(), frequency), omega, 900 * kx2) is None
+    assert cell_kernels._fitted(layer_values(bp.lmmd_cell(), frequency), omega, kx2) is not None
+    assert cell_kernels._fitted(layer_values(bp.lmmd_cell(eta=0.5), frequency), omega, kx2) is None
+    assert cell_kernels._fitted(layer_values(bp.lmmd_cell(), frequency), omega, 900 * kx2) is None
 
 
 # --- the march and the field inside -----------------------------------------------------------------------
@@ -154,7 +149,7 @@ def test_small_bloch_phases(size):
     rng = np.random.default_rng(6)
     h = size * np.sqrt(rng.random((2, 300))) * np.exp(2j * np.pi * rng.random((2, 300)))
     zero = np.zeros_like(h)
-    b = cells.bloch_phase(cells.Matrix(1.0, 2 * h, zero, zero, zero, None))
+    b = cell_kernels.bloch_phase(cell_kernels.Matrix(1.0, 2 * h, zero, zero, zero, None))
     wanted = 2 * np.arcsin(np.sqrt(-h / 2))
     wanted = np.where(wanted.imag < 0, -wanted, wanted)
     np.testing.assert_allclose(b.reduced, wanted, rtol=5e-15)
@@ -165,7 +160,7 @@ def test_small_bloch_phases(size):
 def test_exponentials_near_one(size):
     rng = np.random.default_rng(7)
     z = size * np.sqrt(rng.random(500)) * np.exp(1j * np.pi * (0.5 + rng.random(500)))
-    whole, less = cells._exp_and_expm1(z)
+    whole, less = cell_kernels._exp_and_expm1(z)
     np.testing.assert_allclose(whole, np.exp(z), rtol=1e-15 * (1 + size))
     np.testing.assert_allclose(less, np.expm1(z), rtol=2e-15)
 
@@ -176,7 +171,7 @@ def test_exponentials_less_one(size):
     rng = np.random.default_rng(8)
     z = size * np.sqrt(rng.random(500)) * np.exp(1j * np.pi * (0.5 + rng.random(500)))
     wanted = np.expm1(z)
-    assert np.all(np.abs(cells._expm1(z) - wanted) <= 3e-16 * (np.abs(wanted) + (np.abs(z) >= 1)))
+    assert np.all(np.abs(cell_kernels._expm1(z) - wanted) <= 3e-16 * (np.abs(wanted) + (np.abs(z) >= 1)))
 
 
 @pytest.mark.parametrize("count", [1, 7, 450])
@@ -186,15 +181,15 @@ def test_powers_of_a_cell(seed, count):
     rng = np.random.default_rng(seed)
     layers, omega = layer_values(random_cell(rng), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
     kx = random_kx(rng, 70)
-    m = cells.cell_matrix(layers, omega, kx)
-    b = cells.bloch_phase(m)
+    m = cell_kernels.cell_matrix(layers, omega, kx)
+    b = cell_kernels.bloch_phase(m)
     far = one.State(np.ones_like(kx), 20j + kx, np.zeros(kx.shape))
     lam, x2n, x2 = np.exp(1j * b.reduced), np.expm1(2j * b.reduced * count), np.expm1(2j * b.reduced)
     g, f = (lam + 1 + x2n) / (1 + lam), lam * x2n / x2
     sign = np.where(b.flip, -1, 1)
     p = g * far.p + f * (sign * (far.p + m.e22 * far.p - m.e12 * far.q) - far.p)
     q = g * far.q + f * (sign * (far.q + m.e11 * far.q - m.e21 * far.p) - far.q)
-    found = cells.power_back(m, b, far, count)
+    found = cell_kernels.power_back(m, b, far, count)
     close(found.p, p, rtol=1e-12)
     close(found.q, q, rtol=1e-12)
     close(found.log, -1j * b.phase * count)
@@ -228,9 +223,9 @@ def plain_back(layers, j, omega, kx, state, share):
 @pytest.mark.parametrize("at_once", [0, 2**14])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_field_inside_against_all_layers_in_turn(seed, at_once, monkeypatch):
-    monkeypatch.setattr(inside, "AT_ONCE", at_once)
+    monkeypatch.setattr(interior, "AT_ONCE", at_once)
     rng = np.random.default_rng(seed)
-    s = scene.scene(random_slab(rng), 2500.0)
+    s = sampled.scene(random_slab(rng), 2500.0)
     kx = random_kx(rng, 40)
     z = np.sort(s.thickness * rng.random(150))
     found = response.solve(s.segments, s.before, s.after, s.omega, kx, z)
@@ -250,13 +245,13 @@ def test_periods_by_tables_against_the_closed_form(seed, lossless):
     cell = bp.lmmd_cell(0.05, 0.0) if lossless else bp.lmmd_cell()
     layers, omega = layer_values(cell, np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
     kx = random_kx(rng, 60)
-    m = cells.cell_matrix(layers, omega, kx)
-    b = cells.bloch_phase(m)
+    m = cell_kernels.cell_matrix(layers, omega, kx)
+    b = cell_kernels.bloch_phase(m)
     far = one.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
     # few, dense and sparse: without tables, by all products of two tables, by those that are asked for
-    counts, _ = inside._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 5), 400))
-    two, factors = inside._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
-    plain = cells.power_back(m, b, far, counts[:, None])
+    counts, _ = interior._counts(rng.integers(100, 100 + 10 ** rng.integers(1, 5), 400))
+    two, factors = interior._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
+    plain = cell_kernels.power_back(m, b, far, counts[:, None])
     scale = np.exp(plain.log)
     close((factors * two.p).sum(axis=1), plain.p * scale, rtol=3e-13, axis=0)
     close((factors * two.q).sum(axis=1), plain.q * scale, rtol=3e-13, axis=0)
@@ -270,7 +265,7 @@ def test_the_rest_of_a_layer_as_powers_of_the_share(seed):
     faces = one.State(rng.random((2, 40)) + 0j, rng.random((2, 40)) * 1j, np.zeros(1))
     A, B, _ = one.one_layer(layers, 0, omega * omega, kx * kx)
     for many in (1, 30):
-        found = inside._rest_of_layer(A, B, faces, many)(share)
+        found = interior._rest_of_layer(A, B, faces, many)(share)
         for i in range(2):
             face = one.State(faces.p[i : i + 1], faces.q[i : i + 1], faces.log)
             wanted = [plain_back(layers, 0, omega, kx, face, part)[0][0] for part in share]
@@ -288,15 +283,15 @@ def test_two_waves_in_a_thick_layer_are_the_entire_functions(phase, growth):
     A, share = 1.3 * (1 + rng.random()), rng.random(20)
     p = rng.random(30) + 0.5 + 0j
     face = one.State(p, 1j * w[0] / A * p * (1 + 0.1 * rng.random(30)), np.zeros(30))  # nearly outgoing
-    assert inside._steady(w * w) is not None
-    found = inside._two_waves(inside._steady(w * w), np.array([[A]]), face, np.ones(30), share)
+    assert interior._steady(w * w) is not None
+    found = interior._two_waves(interior._steady(w * w), np.array([[A]]), face, np.ones(30), share)
     v = w.astype(np.clongdouble) * share[:, None]
     close(found, np.cos(v) * face.p - A * share[:, None] * np.sin(v) / v * face.q, axis=0)
 
 
 def test_layers_with_two_waves_that_cannot_be_told_or_overflow_are_left_to_others():
-    assert inside._steady(np.array([[1.0 + 0j, 1e-4]])) is None
-    assert inside._steady(np.array([[1.0 + 0j, -(400.0**2)]])) is None
+    assert interior._steady(np.array([[1.0 + 0j, 1e-4]])) is None
+    assert interior._steady(np.array([[1.0 + 0j, -(400.0**2)]])) is None
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -306,7 +301,7 @@ def test_layers_in_blocks_against_one_by_one(seed):
     layers, omega = layer_values(bp.Cell(tuple(thick)), np.array([2500.0])), np.array([[2 * np.pi * 2500.0]])
     kx = random_kx(rng, 30)
     state = one.State(np.ones_like(kx), 20j + 0 * kx, np.zeros(kx.shape))
-    found, faces = march._through_layers(layers, omega, kx, state, {3, 17})
+    found, faces = recursion._through_layers(layers, omega, kx, state, {3, 17})
     for j in reversed(range(40)):
         if j in faces:
             close(faces[j].p / faces[j].q, state.p / state.q, rtol=1e-9)
@@ -324,9 +319,9 @@ def test_layers_in_blocks_against_one_by_one(seed):
 def test_products_in_pieces(shape):
     rng = np.random.default_rng(3)
     a, b = rng.normal(size=shape[:2]) + 1j, rng.normal(size=shape[1:]) - 2j
-    close(products.small_product(a, b), a @ b)
-    close(products.product(a, b), a @ b)
-    close(products.small_product(a.real, b), a.real @ b)
+    close(matmul.small_product(a, b), a @ b)
+    close(matmul.product(a, b), a @ b)
+    close(matmul.small_product(a.real, b), a.real @ b)
 
 
 def random_sum(rng):
@@ -336,7 +331,7 @@ def random_sum(rng):
     step = 2 * np.pi / (n * dx)
     k = step * (first + np.arange(size)) - 0.7j
     x = rng.uniform(-1, 0) + dx * np.arange(rng.integers(1, n + 1))
-    line = spectral.Line(k, np.ones(size), step, first, 0.7, 1.0)
+    line = paths.Line(k, np.ones(size), step, first, 0.7, 1.0)
     h, right, left = (
         rng.normal(size=s) + 1j * rng.normal(size=s) for s in ((int(rng.integers(1, 90)), size), size, size)
     )
@@ -355,8 +350,8 @@ def test_sums_over_a_line(seed):
     wanted = plain_sum(line, h, right, left, x)
     scale = math.sqrt(line.k.size) * np.abs(h).max() * np.exp(0.7)
     phases = np.abs(line.k).max() * np.abs(x).max()  # whose rounding no order of sums avoids
-    assert np.abs(spectral.fft_sum(line, h, right, left, x, n) - wanted).max() < (RTOL + 4e-16 * phases) * scale
-    assert np.abs(spectral.direct_sum(line, h, right, left, x) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+    assert np.abs(paths.fft_sum(line, h, right, left, x, n) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+    assert np.abs(paths.direct_sum(line, h, right, left, x) - wanted).max() < (RTOL + 4e-16 * phases) * scale
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -365,9 +360,9 @@ def test_many_beams_at_once(seed):
     line, h, right, left, x, n = random_sum(rng)
     rights, lefts = np.stack([right, 2j * right, right * right]), np.stack([left, left * 0, 3 * left])
     each = zip(rights, lefts, strict=True)
-    wanted = np.stack([spectral.direct_sum(line, h, a, b, x) for a, b in each])
-    close(spectral.direct_sum(line, h, rights, lefts, x), wanted, rtol=1e-11)
-    close(spectral.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
+    wanted = np.stack([paths.direct_sum(line, h, a, b, x) for a, b in each])
+    close(paths.direct_sum(line, h, rights, lefts, x), wanted, rtol=1e-11)
+    close(paths.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -377,9 +372,9 @@ def test_an_open_line(seed):
 
     rng = np.random.default_rng(seed)
     sigma, delta, window, band = rng.uniform(0.1, 15, 3), rng.uniform(1, 15, 3), rng.uniform(1, 5, 3), np.full(3, 150.0)
-    plans = [spectral.OpenPlan(*(float(v[i]) for v in (sigma, delta, window, band))) for i in range(3)]
-    for plan in (spectral.OpenPlan(sigma, delta, window, band), *plans):
-        line = spectral.open_line(plan)
+    plans = [paths.OpenPlan(*(float(v[i]) for v in (sigma, delta, window, band))) for i in range(3)]
+    for plan in (paths.OpenPlan(sigma, delta, window, band), *plans):
+        line = paths.open_line(plan)
         d, w = (np.asarray(v)[..., None] for v in (plan.delta, plan.window))
         np.testing.assert_allclose(line.weight, erfc(-line.k / d) / 2 / w, rtol=1e-14)
 
@@ -390,8 +385,8 @@ def test_a_plan_has_come_to_rest(seed):
     rng = np.random.default_rng(seed)
     k, extent, source, path = (rng.uniform(*ends, 4) for ends in ((20, 80), (0.2, 3), (0.1, 0.5), (0.0, 5)))
     branch, rtol = k * rng.uniform(0.2, 1, 4), 10 ** rng.uniform(-11, -2)
-    found = spectral.plan_open(spectral.Reach(k, branch, 3 * k, extent, source, path), rtol)
-    decades, rounding = math.log(20 / rtol), max(2.0, math.log(rtol / (100 * spectral.EPS)))
+    found = paths.plan_open(paths.Reach(k, branch, 3 * k, extent, source, path), rtol)
+    decades, rounding = math.log(20 / rtol), max(2.0, math.log(rtol / (100 * paths.EPS)))
     Z, X = np.maximum(path, 1e-3 / k), np.maximum(extent, source)
     delta, sigma, window = branch / math.sqrt(decades), rounding / (X + 30 / k), X
     for _ in range(30):
@@ -429,7 +424,7 @@ def random_modes(rng):
     n = int(rng.integers(1, 60))
     k = ds[:, None] * (first + np.arange(n)) - 1j * sigma[:, None]
     right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
-    return sections.Modes(spectral.Line(k, np.ones(k.shape), ds, first, sigma), right, left)
+    return sections.Modes(paths.Line(k, np.ones(k.shape), ds, first, sigma), right, left)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -466,7 +461,7 @@ def test_spectra_of_many_angles_are_those_of_each(name):
     beam, rng = SOURCES[name], np.random.default_rng(3)
     angles, kx = rng.uniform(-89, 89, 7), rng.uniform(-300, 300, 50) - 3j * rng.random(50)
     wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, 45.0) for a in angles])
-    close(fan.Fan(beam, angles).spectra(kx, 45.0), wanted, rtol=1e-11)
+    close(source_angles.Fan(beam, angles).spectra(kx, 45.0), wanted, rtol=1e-11)
 
 
 @pytest.mark.parametrize("name", SOURCES)
@@ -474,7 +469,7 @@ def test_many_angles_are_mixed_from_a_few(name):
     """A fan's spectra are, to the tolerance, the mixture of those at its nodes: at the ends and between."""
     beam, rng, k0 = SOURCES[name], np.random.default_rng(4), 45.0
     angles = np.concatenate([[-89.9, 89.9, 0.0], rng.uniform(-89.9, 89.9, 150)])
-    found = fan.fan(beam, angles, k0, 1e-12)
+    found = source_angles.fan(beam, angles, k0, 1e-12)
     assert (found.mix is None) == (name in ("wide", "rotated", "coarse profile"))
     kx = np.linspace(-100, 100, 41) + 0j
     wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, k0) for a in angles])
@@ -500,7 +495,7 @@ def test_errors_of_many_angles_are_judged_by_some(count, monkeypatch):
         np.linspace(-85, 85, count)[np.random.default_rng(0).permutation(count)],
     )
     some = bp.field(slab, beam, 2500.0, x, z, angle=angles)
-    monkeypatch.setattr(judge, "JUDGED", 1000)
+    monkeypatch.setattr(error_estimate, "JUDGED", 1000)
     all_of_them = bp.field(slab, beam, 2500.0, x, z, angle=angles)
     np.testing.assert_array_equal(some.p, all_of_them.p)
     assert np.all(some.error_estimate > 0.5 * all_of_them.error_estimate)
@@ -530,12 +525,12 @@ def test_rows_of_low_rank_follow_from_a_few(rank):
     h = (unitary(300) * 5.0 ** -np.arange(rank)) @ unitary(80).T
     h *= np.exp(rng.uniform(-200, 200, (300, 1)))
     size = np.linalg.norm(h, axis=1, keepdims=True)
-    rows, columns, pivots = planes.cross(h / size, 1e-14, 40)
+    rows, columns, pivots = low_rank.cross(h / size, 1e-14, 40)
     assert rows.size <= rank + 1
     assert np.all(np.diff(pivots) < 1e-12)
-    mix = planes.mixing(h[:, columns], h[rows][:, columns])
+    mix = low_rank.mixing(h[:, columns], h[rows][:, columns])
     np.testing.assert_allclose((mix @ (h[rows] / size[rows] * size[rows]) - h) / size, 0, atol=1e-12)
-    assert planes.cross(h / size, 1e-14, rank - 1).rows.size == rank - 1
+    assert low_rank.cross(h / size, 1e-14, rank - 1).rows.size == rank - 1
 
 
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
@@ -562,7 +557,7 @@ def test_many_planes_are_made_of_a_few(name, rtol, monkeypatch):
     beam = bp.GaussianBeam(0.096, angle, z0=z0)
     x, z = np.linspace(-1.2, 1.2, 200), np.linspace(z0, slab.thickness + 0.3, 500)
     few = bp.field(slab, beam, 2500.0, x, z, rtol=rtol)
-    monkeypatch.setattr(propagate, "MANY_PLANES", 10**9)
+    monkeypatch.setattr(evaluate, "MANY_PLANES", 10**9)
     alone = bp.field(slab, beam, 2500.0, x, z, rtol=rtol)
     apart = np.abs(few.p - alone.p).max("x") / np.abs(alone.p).max("x")
     assert apart.max() <= 0.1 * rtol
@@ -575,13 +570,13 @@ def test_a_map_sums_few_of_its_planes(name, monkeypatch):
     slab, angle, z0 = MANY_PLANES[name]
     beam = bp.GaussianBeam(0.096, angle, z0=z0)
     x, z = np.linspace(-1.2, 1.2, 200), np.linspace(z0, slab.thickness + 0.3, 600)
-    count, fill = [], propagate.fill
+    count, fill = [], evaluate.fill
 
     def watched(s, beams, solution, h, *rest):
         count.append(h.shape[0])
         return fill(s, beams, solution, h, *rest)
 
-    monkeypatch.setattr(propagate, "fill", watched)
+    monkeypatch.setattr(evaluate, "fill", watched)
     ordered = bp.field(slab, beam, 2500.0, x, z)
     assert sum(count) < 120
     shuffled = np.random.default_rng(0).permutation(z.size)
@@ -596,20 +591,24 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     """A line that leaves no room for them: every plane by itself, and no warning."""
     slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
-    choose = lines.choose_line
-    monkeypatch.setattr(lines, "choose_line", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8])))
+    choose = contour_choice.choose_line
+    monkeypatch.setattr(
+        contour_choice, "choose_line", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
+    )
     assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
 
 
 def test_the_end_of_a_path_is_not_that_of_its_circles():
     """What lies beyond a band is judged by the path's last nodes, however strong the nodes around single modes are."""
     k = np.linspace(1, 50, 60).astype(complex)
-    line = spectral.Line(k, np.ones(60))
-    with_circles = spectral.Line(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
+    line = paths.Line(k, np.ones(60))
+    with_circles = paths.Line(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
     right = np.exp(-k / 2)[None]
     strong = np.concatenate([np.full((1, 400), 1e9 + 0j), right], axis=1)
-    alone = judge._beyond(judge.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
-    beside = judge._beyond(judge.Sampled(with_circles, np.ones((1, 460)), (strong, strong)), strong, strong)
+    alone = error_estimate._beyond(error_estimate.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
+    beside = error_estimate._beyond(
+        error_estimate.Sampled(with_circles, np.ones((1, 460)), (strong, strong)), strong, strong
+    )
     np.testing.assert_allclose(beside, alone, rtol=1e-12)
     assert alone > 0
 
@@ -618,8 +617,8 @@ def test_planes_that_do_not_follow_are_summed_themselves(monkeypatch):
     """Where the few planes do not serve, the answer is that of every plane by itself."""
     slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
-    right = planes.mixing
-    monkeypatch.setattr(propagate, "mixing", lambda *given: right(*given) * (1 + 1e-6))
+    right = low_rank.mixing
+    monkeypatch.setattr(evaluate, "mixing", lambda *given: right(*given) * (1 + 1e-6))
     spoiled = bp.field(slab, beam, 2500.0, x, z)
-    monkeypatch.setattr(propagate, "MANY_PLANES", 10**9)
+    monkeypatch.setattr(evaluate, "MANY_PLANES", 10**9)
     np.testing.assert_array_equal(spoiled.p, bp.field(slab, beam, 2500.0, x, z).p)

@@ -5,9 +5,10 @@ import pytest
 from oracles import slab_response
 
 import beamprop as bp
-from beamprop import media, response
+from beamprop import response
 from beamprop.conventions import outgoing_kz
-from beamprop.response import layers
+from beamprop.media import structures
+from beamprop.response import layer as layer_kernels
 
 F = 2500.0
 OMEGA = 2 * np.pi * F
@@ -29,7 +30,7 @@ def inside(slab, kx, z):
     """p at depths z per unit incident pressure, (Z, n)."""
     f, kx = np.array([F]), np.atleast_1d(np.asarray(kx, complex))
     return response.solve(
-        media.slab_values(slab, f),
+        structures.slab_values(slab, f),
         slab.before.at(f),
         slab.after.at(f),
         np.array([[OMEGA]]),
@@ -543,14 +544,14 @@ def test_a_single_kx_is_answered_in_the_first_zone():
 def layer_work(monkeypatch, ask):
     """How many numbers the layers' functions are evaluated at while `ask` runs."""
     work = []
-    original = layers.entire
+    original = layer_kernels.entire
 
     def counted(u):
         work.append(np.size(u))
         return original(u)
 
     with monkeypatch.context() as patch:
-        patch.setattr(layers, "entire", counted)
+        patch.setattr(layer_kernels, "entire", counted)
         ask()
     return sum(work)
 

@@ -191,20 +191,20 @@ def test_plane_waves_in_parts_are_the_same(monkeypatch):
 @pytest.mark.parametrize("even", [True, False])
 def test_rows_in_parts_are_the_same(monkeypatch, even):
     """A long row is summed in parts: the field is the same to rounding."""
-    from beamprop import spectral
+    from beamprop.contour import paths
 
     x = np.linspace(-1, 1, 5000) if even else np.sort(np.random.default_rng(1).uniform(-1, 1, 5000))
     ask = lambda: bp.field(SLAB, BEAM, 2500.0, x, [0.0, 0.1, 0.2], angle=[0.0, 10.0]).p  # noqa: E731
     whole = ask()
-    monkeypatch.setattr(spectral, "POINTS_AT_A_TIME", 300)
-    monkeypatch.setattr("beamprop.propagate.fft_is_cheaper", lambda *_: False)
+    monkeypatch.setattr(paths, "POINTS_AT_A_TIME", 300)
+    monkeypatch.setattr("beamprop.fields.evaluate.fft_is_cheaper", lambda *_: False)
     parts = ask()
     assert float(abs(parts - whole).max()) < 1e-9 * float(abs(whole).max())
 
 
 def test_widths_in_parts_are_the_same(monkeypatch):
     """Frequencies that take many plane waves are worked on in halves."""
-    from beamprop import sections
+    from beamprop.profiles import sections
 
     f = np.linspace(2000, 3000, 11)
     whole = bp.beam_width(SLAB, BEAM, f)

@@ -5,7 +5,9 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop import misplaced, modes, roots, scene
+from beamprop.media import sampled
+from beamprop.modes import argument_principle, misplaced
+from beamprop.modes import guided as guided_modes
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -74,9 +76,9 @@ def test_a_cluster_whose_direction_cannot_be_told_is_refused(monkeypatch):
     """By name, as every refusal is."""
 
     def undecided(*_):
-        raise roots.TooManyModes
+        raise argument_principle.TooManyModes
 
-    monkeypatch.setattr(modes, "_direction", undecided)
+    monkeypatch.setattr(guided_modes, "_direction", undecided)
     with pytest.raises(ValueError, match="slab: two of its modes"):
         bp.guided_modes(thin(-2.0, 0.3), F)
 
@@ -93,7 +95,7 @@ def test_a_cluster_of_backward_modes_gets_one_circle():
     apart = [float(np.abs(field(loss) - limit).max() / np.abs(limit).max()) for loss in (1e-4, 1e-5, 1e-6)]
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)
     assert apart[1] / apart[2] == pytest.approx(10, rel=0.05)
-    s = scene.scene(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
+    s = sampled.scene(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
     found = misplaced.misplaced(s, 0.3 * K0, 10 * K0, 1e-3 * K0)
     assert len(found.poles) == len(set(found.poles))
     assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.poles)
@@ -158,7 +160,7 @@ def test_field_far_from_a_slab_with_backward_modes():
     )
     slab, beam = bp.Slab(cell, 12), bp.GaussianBeam(0.11, x0=0.18, z0=-4.0)
     a, k0 = 0.11 / (2 * np.sqrt(np.log(2))), 2 * np.pi * frequency / 343
-    found = misplaced.misplaced(scene.scene(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
+    found = misplaced.misplaced(sampled.scene(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
     assert any(abs(k) < 0.9 * k0 for k in found.poles)
     x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
     want = oracles.open_field(
@@ -181,18 +183,19 @@ def test_field_far_from_a_slab_with_backward_modes():
 
 def test_wrong_side_would_be_seen():
     """The circles are what puts a backward mode right: without them the field is far off."""
-    from beamprop import lines, propagate, transfers
-    from beamprop.fan import single
-    from beamprop.scene import scene
+    from beamprop.contour import choose
+    from beamprop.fields import evaluate
+    from beamprop.response import transfer_function
+    from beamprop.sources.angles import single
 
-    s = scene(thin(-0.6, 0.01), F)
+    s = sampled(thin(-0.6, 0.01), F)
     assert len(misplaced.misplaced(s, 0.2 * K0, 5 * K0, 1e-3 * K0).poles) == 1
     beam = bp.GaussianBeam(0.02)
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
-    transfer = transfers.through(s, 0.0)
+    transfer = transfer_function.through(s, 0.0)
     with_them, without = (
-        propagate.point_sum(s, beam, line, transfer(line.k, z), x)
-        for line in (lines.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False))
+        evaluate.point_sum(s, beam, line, transfer(line.k, z), x)
+        for line in (choose.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False))
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 
@@ -202,7 +205,7 @@ def test_wrong_side_would_be_seen():
 def test_turns_about_zeros_that_are_known(seed, near):
     """Rational functions with up to 12 zeros and poles, in boxes of all shapes: zeros less poles inside."""
     rng = np.random.default_rng(seed)
-    box = roots.Box(-rng.random(), 4 + 40 * rng.random(), -rng.random(), 20 * rng.random() ** 3)
+    box = argument_principle.Box(-rng.random(), 4 + 40 * rng.random(), -rng.random(), 20 * rng.random() ** 3)
     zeros, poles = (
         rng.uniform(box.left - 1, box.right + 1, n) + 1j * rng.uniform(box.low - 1, box.high + 1, n)
         for n in rng.integers(0, 12, 2)
@@ -214,11 +217,11 @@ def test_turns_about_zeros_that_are_known(seed, near):
 
     wanted = sum(box.holds(k, 0.0) for k in zeros) - sum(box.holds(k, 0.0) for k in poles)
     path = box.outline(48, near)
-    assert roots.winding(f, path, 1e-9) == wanted
+    assert argument_principle.winding(f, path, 1e-9) == wanted
     several = np.stack([path, path + 1.0, path - 100.0])
-    assert roots.windings(lambda k, owner: f(k - np.array([0.0, 1.0, 0.0])[owner][:, None]), several, 1e-9)[
-        :2
-    ].tolist() == [wanted, wanted]
+    assert argument_principle.windings(
+        lambda k, owner: f(k - np.array([0.0, 1.0, 0.0])[owner][:, None]), several, 1e-9
+    )[:2].tolist() == [wanted, wanted]
 
 
 def test_turns_about_pairs_of_zeros_beside_the_outline():
@@ -226,7 +229,7 @@ def test_turns_about_pairs_of_zeros_beside_the_outline():
     for seed in range(200):
         rng = np.random.default_rng(seed)
         width, depth, m = rng.uniform(80, 250), rng.uniform(3, 12), int(rng.integers(2, 12))
-        box = roots.Box(0.05, width, -depth, 0.0)
+        box = argument_principle.Box(0.05, width, -depth, 0.0)
         beside = 10 ** rng.uniform(-4, 1, m) * rng.choice([-1, 1], m)
         zeros = rng.uniform(0, width, m) + 1j * (rng.choice([0, -depth], m) + beside)
         zeros[1] = zeros[0] + 10 ** rng.uniform(-4, 0.5) * np.exp(2j * np.pi * rng.random())
@@ -235,7 +238,7 @@ def test_turns_about_pairs_of_zeros_beside_the_outline():
             return np.prod(k[..., None] - zeros, axis=-1), np.zeros(k.shape)
 
         wanted = sum(box.holds(k, 0.0) for k in zeros)
-        assert roots.winding(f, box.outline(48, K0), 1e-9 * width) == wanted, seed
+        assert argument_principle.winding(f, box.outline(48, K0), 1e-9 * width) == wanted, seed
 
 
 @pytest.mark.parametrize("nodes", [1, 5, 24])
@@ -243,7 +246,7 @@ def test_outlines_go_around_once(nodes):
     """Corners in turn, counter-clockwise, each side from corner to corner; more nodes beside a branch point."""
     left, right, low, high = np.array([1.0, 2.0]), np.array([9.0, 4.0]), np.array([-1.0, -3.0]), np.array([0.0, 0.5])
     for near in (None, np.array([3.0, 30.0])):
-        paths = roots.outlines(left, right, low, high, nodes, near)
+        paths = argument_principle.outlines(left, right, low, high, nodes, near)
         for path, a, b, c, d in zip(paths, left, right, low, high, strict=True):
             corners = [a + 1j * c, b + 1j * c, b + 1j * d, a + 1j * d]
             assert [int(np.argmax(path == k)) for k in corners] == sorted(int(np.argmax(path == k)) for k in corners)
@@ -257,13 +260,14 @@ def test_outlines_go_around_once(nodes):
 @pytest.mark.parametrize("loss", [0.0, 1e-3, 1e-2])
 def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
     """As `misplaced` finds them one by one; of a lossless slab forward ones may be counted too."""
-    from beamprop.scene import scene, scenes
+    from beamprop.media.sampled import scenes
 
     f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
     depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
     found = misplaced.some_misplaced(scenes(slab, f), depth, band)
     each = [
-        bool(misplaced.misplaced(scene(slab, a), b, c, 1e-3 * K0).poles) for a, b, c in zip(f, depth, band, strict=True)
+        bool(misplaced.misplaced(sampled(slab, a), b, c, 1e-3 * K0).poles)
+        for a, b, c in zip(f, depth, band, strict=True)
     ]
     assert np.all(found >= each)
     assert loss == 0 or found.tolist() == each
@@ -373,19 +377,27 @@ def test_a_plain_beam_says_nothing():
 
 def test_crossings_alone_and_together():
     """Sampled on one window at once, and in a window that grows: the same number."""
-    from beamprop import sections, transfers
-    from beamprop.scene import at_frequency, scenes
+    from beamprop.media.sampled import at_frequency, scenes
+    from beamprop.profiles import sections
+    from beamprop.response import transfer_function
 
     slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
     s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
     face = np.full(3, slab.thickness)
     route = sections.Route(
-        s, lambda some, _: sections.far_face(some, 0.0), lambda one: transfers.through(one, 0.0), face, face, True
+        s,
+        lambda some, _: sections.far_face(some, 0.0),
+        lambda one: transfer_function.through(one, 0.0),
+        face,
+        face,
+        True,
     )
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = at_frequency(s, i)
-        alone = sections._measured_alone(one, beam, transfers.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        alone = sections._measured_alone(
+            one, beam, transfer_function.through(one, 0.0), slab.thickness, 1e-6, 0.5, True
+        )
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
 

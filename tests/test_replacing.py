@@ -15,7 +15,7 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
-from beamprop.storage import settled, whole
+from beamprop.io.storage import settled, whole
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and permissions")
 NAMES = ["a.nc", "a.zarr"]

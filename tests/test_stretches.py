@@ -5,8 +5,8 @@ import pytest
 from oracles import _product
 
 import beamprop as bp
-from beamprop import scene as scenes
-from beamprop import stretches
+from beamprop.contour import stretches
+from beamprop.media import sampled as scenes
 
 F = 4500.0
 LAMBDA = 2 * np.pi / float(bp.AIR.wavenumber(F).real)

@@ -293,7 +293,7 @@ def test_the_ends_of_the_range_are_computed_with(size):
 
 def test_phases_that_are_no_numbers_end():
     """Inside, infinite and undefined phases raise instead of recursing without end."""
-    from beamprop.response.layers import entire
+    from beamprop.response.layer import entire
 
     for wrong in (np.nan, np.inf, complex(np.nan, np.inf)):
         with pytest.raises(ValueError, match="slab: expected layers whose phase squared"):

@@ -35,7 +35,7 @@ def answer(
             click.echo(f"warning: {w.message}", err=True)
     try:
         if o["output"] and not saved:
-            from ..storage import save
+            from ..io.storage import save
 
             save(ds, o["output"])
         if o["plot"] and draw is not None:
@@ -60,7 +60,7 @@ def draw_into(ds: xr.Dataset, draw: Callable[[xr.Dataset], Any], path: Path) -> 
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
 
-    from ..storage import write_whole
+    from ..io.storage import write_whole
 
     figure = draw(ds).figure
     write_whole(path, lambda draft: figure.savefig(draft, dpi=150))

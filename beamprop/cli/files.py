@@ -19,8 +19,8 @@ SOURCE = click.Path(exists=True, path_type=Path)
 
 def read(path: Path) -> xr.Dataset:
     """A dataset of ours (.nc, .zarr), or COMSOL's text."""
-    from ..comsol import read_comsol
-    from ..storage import NETCDF, ZARR, load
+    from ..io.comsol import read_comsol
+    from ..io.storage import NETCDF, ZARR, load
 
     return load(path) if path.suffix.lower() in NETCDF + ZARR else read_comsol(path)
 
@@ -38,7 +38,7 @@ def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, **o: Any) 
     """Measure the field in file B against that in file A (.nc, .zarr, or COMSOL's text)."""
 
     def ask() -> xr.Dataset:
-        from ..comparison import compare
+        from ..comparison.fields import compare
 
         return compare(read(a), read(b), rescale)
 
@@ -79,12 +79,12 @@ def convert(
     source: Path, target: Path, x: str | None, z: str | None, expression: str | None, split_complex: bool, quiet: bool
 ) -> None:
     """Bring COMSOL's text, or a dataset of ours, to a .nc or .zarr."""
-    from ..storage import NETCDF, ZARR, save
+    from ..io.storage import NETCDF, ZARR, save
 
     def ask() -> xr.Dataset:
         if source.suffix.lower() in NETCDF + ZARR:
             return read(source)
-        from ..comsol import read_comsol
+        from ..io.comsol import read_comsol
 
         return read_comsol(source, x, z, expression)
 

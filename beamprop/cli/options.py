@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
-    from ..media import Slab
+    from ..media.structures import Slab
 
 
 class Number(click.ParamType):
@@ -69,7 +69,7 @@ class Target(click.ParamType):
         path = Path(value)
         if path.suffix.lower() not in self.endings:
             self.fail(f"expected a name ending in {' or '.join(self.endings)}, got {str(value)!r}", param, ctx)
-        from ..storage import check_target
+        from ..io.storage import check_target
 
         try:
             return check_target(path)
@@ -146,7 +146,7 @@ OUTPUT = all_of(
 
 def cell_of(o: dict[str, Any]) -> Any:
     """The cell and its background."""
-    from ..media import Fluid, lmmd_cell
+    from ..media.structures import Fluid, lmmd_cell
 
     background = Fluid.from_speed(o["density"], o["sound_speed"])
     rho_m, delta_rho = o["rho_m"], o["delta_rho"]
@@ -157,8 +157,8 @@ def cell_of(o: dict[str, Any]) -> Any:
 
 def slab_of(o: dict[str, Any]) -> Slab:
     """The slab, or an effective medium in its place."""
-    from ..homogenize import lmmd_emt_slab, standard_emt
-    from ..media import Fluid, Slab
+    from ..media.effective import lmmd_emt_slab, standard_emt
+    from ..media.structures import Fluid, Slab
 
     cell, before = cell_of(o)
     after = before
@@ -177,7 +177,7 @@ def slab_of(o: dict[str, Any]) -> Slab:
 
 def beam_of(o: dict[str, Any], z0: float = 0.0) -> Any:
     """The beam, launched at z0."""
-    from ..beam import GaussianBeam
+    from ..sources.beams import GaussianBeam
 
     return GaussianBeam(o["fwhm"], 0.0, o["x0"], z0, o["width_of"], o["form"])
 

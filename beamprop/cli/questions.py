@@ -24,7 +24,7 @@ def width(**o: Any) -> None:
     """Beam widths against frequency or angle (the paper's Fig. 6)."""
 
     def ask() -> xr.Dataset:
-        from ..questions import beam_width
+        from ..api import beam_width
 
         return beam_width(
             slab_of(o),
@@ -73,7 +73,7 @@ def field(**o: Any) -> None:
     """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
 
     def ask() -> xr.Dataset:
-        from ..questions import field
+        from ..api import field
 
         slab = slab_of(o)
         z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
@@ -90,7 +90,7 @@ def field(**o: Any) -> None:
         )
         if o["memory"] is None:
             return field(*question, progress=progress(o["quiet"], "fields"))
-        from ..blocks import save_field
+        from ..api.save_field import save_field
 
         return save_field(
             o["output"], *question, memory=o["memory"] * 2**20, progress=progress(o["quiet"], "blocks of the field")
@@ -140,7 +140,7 @@ def spectrum(**o: Any) -> None:
     }
 
     def ask() -> xr.Dataset:
-        from ..questions import scattering
+        from ..api import scattering
 
         return scattering(slab_of(o), o["frequency"], **axes)
 
@@ -164,7 +164,7 @@ def bloch(**o: Any) -> None:
     """Bloch wavenumber of the infinite medium against kx: equifrequency contours (the paper's Fig. 4)."""
 
     def ask() -> xr.Dataset:
-        from ..questions import bloch
+        from ..api import bloch
 
         cell, background = cell_of(o)
         return bloch(cell, o["frequency"], kx_over_k0=o["kx_over_k0"], background=background)
@@ -194,7 +194,7 @@ def modes(**o: Any) -> None:
     """The modes that the slab guides, with the direction of their energy."""
 
     def ask() -> xr.Dataset:
-        from ..questions import guided_modes
+        from ..api import guided_modes
 
         return guided_modes(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
 

@@ -18,9 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..beam import Beam
 from ..conventions import outgoing_kz
-from ..media import Fluid, Slab
+from ..media.structures import Fluid, Slab
+from ..sources.beams import Beam
 from .strip import Strip, line_basis, line_dofs
 
 

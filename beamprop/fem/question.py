@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import datasets, validate
-from ..beam import Beam
-from ..media import Slab
+from .. import validate
+from ..io import datasets
+from ..media.structures import Slab
+from ..sources.beams import Beam
 from . import boundary, solvers, strip
 from .task import Plan, Task, make_task, predict, wavenumber
 

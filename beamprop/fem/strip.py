@@ -25,7 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import sparse
 
-from ..media import Cell, Layer, Membrane, Slab
+from ..media.structures import Cell, Layer, Membrane, Slab
 
 #: Element size along x and z over the wavelength that gives an error of some 1e-4 to 1e-3, by order.
 SIZE_OVER_WAVELENGTH = {1: 0.05, 2: 0.1, 3: 0.2, 4: 0.3}

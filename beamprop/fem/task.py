@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
-from ..beam import Beam
-from ..media import Slab
+from ..media.structures import Slab
+from ..sources.beams import Beam
 from ..validate import as_count, as_number
 from . import boundary, solvers, strip
 

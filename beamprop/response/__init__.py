@@ -16,10 +16,10 @@ slab.py: what is asked of a slab. waves.py: r and t from the waves of each mediu
 accuracy.py: r and t with estimated errors. bloch.py: infinite stacks.
 """
 
-from .accuracy import SHIFT, Checked, solve_checked
 from .bloch import bloch_error, bloch_wavenumber
-from .cells import cell_matrix
-from .layers import perturbed
+from .cell import cell_matrix
+from .conditioning import SHIFT, Checked, solve_checked
+from .layer import perturbed
 from .slab import Response, dispersion, solve
 
 __all__ = [

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..media import LayerValues, SegmentValues
-from .accuracy import ROUNDING, SHIFT
-from .cells import bloch_phase, cell_matrix
-from .layers import perturbed
+from ..media.structures import LayerValues, SegmentValues
+from .cell import bloch_phase, cell_matrix
+from .conditioning import ROUNDING, SHIFT
+from .layer import perturbed
 
 
 def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> np.ndarray:

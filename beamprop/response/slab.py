@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media import FluidValues, SegmentValues
-from .inside import fill_inside
-from .layers import State
-from .march import Station, march
+from ..media.structures import FluidValues, SegmentValues
+from .interior import fill_inside
+from .layer import State
+from .recursion import Station, march
 
 
 class Response(NamedTuple):

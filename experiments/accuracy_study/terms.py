@@ -117,41 +117,41 @@ def _some(kind: str, count: int = 12) -> tuple[int, ...]:
 #: Every term of the estimate. Where the package's line changes, it changes here.
 TERMS = [
     Term(
-        "difference of two contours", "judge", "_difference",
+        "difference of two contours", "contour.error_estimate", "_difference",
         "np.max(np.abs(a - b), axis=2) / scale", "0 * np.max(np.abs(a - b), axis=2) / scale", tuple(range(15)),
     ),
     Term(
-        "what lies beyond the band", "judge", "_beyond",
+        "what lies beyond the band", "contour.error_estimate", "_beyond",
         "return 2 * last * ratio / (1 - ratio)", "return 0 * last", tuple(_cones()),
     ),
     Term(
-        "a spectrum that is cut off", "judge", "_difference", "error += cut / scale", "error += 0 * cut / scale",
+        "a spectrum that is cut off", "contour.error_estimate", "_difference", "error += cut / scale", "error += 0 * cut / scale",
         tuple(_coarse_profiles()),
     ),
     Term(
-        "mixing of angles", "judge", "_difference", "error += fan.tolerance + 3 *", "error += 0 * fan.tolerance + 0 *",
+        "mixing of angles", "contour.error_estimate", "_difference", "error += fan.tolerance + 3 *", "error += 0 * fan.tolerance + 0 *",
         tuple(range(0, 700, 7)),
     ),
     Term(
-        "planes made of a few", "propagate", "_fill_from_few", "return error", "return 0 * error", tuple(range(1, 600, 5)),
+        "planes made of a few", "fields.evaluate", "_fill_from_few", "return error", "return 0 * error", tuple(range(1, 600, 5)),
     ),
     Term(
-        "rounding of long phases", "judge", "_difference",
+        "rounding of long phases", "contour.error_estimate", "_difference",
         "return worst + spectral.EPS * (4 + checks.k0 * way)", "return worst + 0 * way", (*_some("very wide beams", 20), FAR),
     ),
     Term(
-        "second response moved in its last bits", "judge", "sampled", "SHIFT if moved else 0.0", "0.0",
+        "second response moved in its last bits", "contour.error_estimate", "sampled", "SHIFT if moved else 0.0", "0.0",
         (*_some("sharp resonances", 20), *_some("LMMD, 1 or 100 000 periods", 20)),
     ),
     Term(
-        "brightness outside the window", "judge", "_difference",
+        "brightness outside the window", "contour.error_estimate", "_difference",
         "largest = np.maximum(largest, checks.bright)", "largest = largest * 1.0", (FAR,), False,
     ),
     Term(
-        "planes too dark to be seen", "judge", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (SHADOW, BLACK), False,
+        "planes too dark to be seen", "contour.error_estimate", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (SHADOW, BLACK), False,
     ),
     Term(
-        "planes dark to rounding", "judge", "_difference", "(largest > DARK) & ~checks.dark", "(largest > DARK)", (WALL,), False,
+        "planes dark to rounding", "contour.error_estimate", "_difference", "(largest > DARK) & ~checks.dark", "(largest > DARK)", (WALL,), False,
     ),
 ]  # fmt: skip
 

@@ -17,7 +17,10 @@ from timing import Row, measure, process, table
 from tqdm import tqdm
 
 import beamprop as bp
-from beamprop import response, scene, sections, spectral
+from beamprop import response
+from beamprop.contour import paths
+from beamprop.media import sampled
+from beamprop.profiles import sections
 
 FREQUENCY = 2500.0
 WAVELENGTH = 343.0 / FREQUENCY
@@ -86,12 +89,12 @@ def widths(options: argparse.Namespace) -> list[Row]:
     ]
 
 
-def _own_modes(frequency: float) -> tuple[scene.Scene, np.ndarray]:
+def _own_modes(frequency: float) -> tuple[sampled.Scene, np.ndarray]:
     """A frequency's scene, and the line that `beam_width` takes for it."""
-    batch = scene.scenes(SLAB, np.array([frequency]))
+    batch = sampled.scenes(SLAB, np.array([frequency]))
     middle, half = sections.landing(batch, BEAM, sections.far_face(batch, BEAM.z0))
     plan = sections._plan(batch, BEAM, np.array([SLAB.thickness]), middle, half, 1e-8)
-    return scene.scene(SLAB, frequency), spectral.open_line(plan).k[0]
+    return sampled.scene(SLAB, frequency), paths.open_line(plan).k[0]
 
 
 def angles(options: argparse.Namespace) -> list[Row]:
@@ -120,7 +123,7 @@ def aperiodic() -> bp.Slab:
 
 def many_layers(options: argparse.Namespace) -> list[Row]:
     """(e) 4500 different layers, 400 modes, the field at 1000 depths."""
-    s = scene.scene(aperiodic(), FREQUENCY)
+    s = sampled.scene(aperiodic(), FREQUENCY)
     kx = np.linspace(0, 60, 400)[None] - 1j
     _, z = grids()
     (ours,) = measure(

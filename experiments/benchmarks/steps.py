@@ -14,9 +14,10 @@ from run import BEAM, FREQUENCY, SLAB, grids
 from timing import amount, measure
 
 import beamprop as bp
-from beamprop import fan, lines, propagate
-from beamprop.questions import maps
-from beamprop.response import cells, inside
+from beamprop.contour import choose
+from beamprop.fields import evaluate, question
+from beamprop.response import cell, interior
+from beamprop.sources import angles as source_angles
 
 Work = Callable[[], object]
 X, Z = grids()
@@ -111,13 +112,13 @@ class Step(NamedTuple):
 
 
 STEPS = [
-    Step("planes made of a few: 450 periods", field_map, propagate, "MANY_PLANES", 10**9),
-    Step("planes made of a few: air", air, propagate, "MANY_PLANES", 10**9),
-    Step("angles mixed from a few nodes", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), maps, "fan", lambda beam, at, *_: fan.Fan(beam, at)),
-    Step("straight lines and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), lines, "fft_is_cheaper", lambda *_: False),
-    Step("cells as polynomials in kx², 101 frequencies", widths, cells, "_fitted", lambda *_: None),
-    Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), inside, "TABLE", 10**9),
-    Step("two waves in a thick layer", air, inside, "_steady", lambda u: None),
+    Step("planes made of a few: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
+    Step("planes made of a few: air", air, evaluate, "MANY_PLANES", 10**9),
+    Step("angles mixed from a few nodes", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.Fan(beam, at)),
+    Step("straight lines and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
+    Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
+    Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
+    Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),
 ]  # fmt: skip
 
 
@@ -146,13 +147,13 @@ def compare(step: Step, repeats: int) -> tuple[float, float]:
 def planes_summed(work: Work) -> int:
     """How many planes stand for all of a map."""
     found = []
-    cross = propagate.cross
+    cross = evaluate.cross
 
     def watched(*given: Any) -> Any:
         found.append(cross(*given))
         return found[-1]
 
-    with switched_off(Step("", work, propagate, "cross", watched)):
+    with switched_off(Step("", work, evaluate, "cross", watched)):
         work()
     return max(one.within(2e-12) for one in found)
 

@@ -1,0 +1,87 @@
+"""What the questions share about their arguments beyond plain checks of values: angles, kx, labels of axes, warnings."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from .. import memory, validate
+from ..media.structures import Fluid, Slab
+from ..sources.beams import Beam, sin_degrees
+
+#: Wraps the items of a loop, to watch it.
+Progress = Callable[[Iterable[Any]], Iterable[Any]]
+
+
+class AccuracyWarning(UserWarning):
+    """An answer whose estimated error is above the asked rtol."""
+
+
+def announce(error: float, rtol: float, stacklevel: int = 3) -> None:
+    """Nothing above rtol leaves a public call without a word."""
+    if error > rtol:
+        warnings.warn(
+            f"estimated error {error:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
+            AccuracyWarning,
+            stacklevel=stacklevel,
+        )
+
+
+def angles(angle: Any, beam: Beam) -> np.ndarray:
+    """The asked angles of a beam [degree], its own by default."""
+    return validate.angles(beam.angle if angle is None else angle)
+
+
+def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:
+    """Wavenumber of the medium in front [rad/m]."""
+    return forward_k0(slab.before, frequency, "before")
+
+
+def forward_k0(fluid: Fluid, frequency: np.ndarray, name: str) -> np.ndarray:
+    """Wavenumber of a fluid that carries forward waves [rad/m]."""
+    k = fluid.wavenumber(frequency)
+    if not np.all(np.isfinite(k) & (k.real > 0)):
+        raise ValueError(f"{name}: kx_over_k0 and angle need a fluid that carries forward waves, got {fluid!r}; use kx")
+    return k.real
+
+
+def one_of(**options: Any) -> tuple[str, Any]:
+    """The one option that is given."""
+    given = {name: value for name, value in options.items() if value is not None}
+    if len(given) != 1:
+        raise ValueError(f"expected exactly one of {', '.join(options)}, got {', '.join(given) or 'none'}")
+    return next(iter(given.items()))
+
+
+def lateral(
+    name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+
+    `bytes_each` is what the answer to one plane wave holds.
+    """
+    values = validate.angles(value, grazing=True) if name == "angle" else validate.axis(value, name, kind=complex)
+    if not np.any(values.imag):
+        values = values.real
+    flat = np.atleast_1d(values)
+    memory.check_waves(frequency.size * flat.size, flat.size, name, bytes_each)
+    if name == "kx":
+        return values, np.broadcast_to(flat, (frequency.size, flat.size))
+    if name == "angle":
+        flat = sin_degrees(flat)
+    kx = np.atleast_1d(k0_at(frequency))[:, None] * flat
+    validate.within(kx, name, zero=True)
+    return values, kx
+
+
+def dims(**axes: np.ndarray) -> tuple[tuple[str, ...], tuple[Any, ...]]:
+    """Names of the axes that are arrays, and the index that drops the scalar ones."""
+    return tuple(n for n, a in axes.items() if a.ndim), tuple(slice(None) if a.ndim else 0 for a in axes.values())
+
+
+def coords(**axes: np.ndarray) -> dict[str, tuple[tuple[str, ...], Any]]:
+    """Coordinates of the axes, scalars as scalars."""
+    return {n: ((n,) if a.ndim else (), a) for n, a in axes.items()}

@@ -1,0 +1,114 @@
+"""Field maps larger than memory: made plane by plane, written to a file block by block."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import validate
+from ..io.storage import check_target, save_blocks
+from ..media.structures import Slab
+from ..memory import check_field
+from ..sources.beams import Beam
+from . import FieldMap, Progress
+
+#: The largest chunk of a file [bytes].
+CHUNK = 2**24
+#: Of a complex number [bytes].
+SIZE = 16
+
+
+def save_field(
+    path: str | Path,
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    x: Any,
+    z: Any,
+    angle: Any = None,
+    boundary: str = "open",
+    period: float | None = None,
+    rtol: float = 1e-8,
+    memory: float = 2**28,
+    progress: Progress = iter,
+) -> xr.Dataset:
+    """A field map in a file, written in blocks: as `save` would write the answer of `field`, without ever holding it.
+
+    Parameters
+    ----------
+    path : path
+        Ending in .nc (netCDF) or .zarr; replaced if it exists, once the new one is complete.
+    slab, beam, frequency, x, z, angle, boundary, period, rtol
+        As in `field`.
+    memory : float, bytes
+        Of the largest block of p that is held at a time: one row along x at least. What a block is made from takes
+        some tens of MB more.
+    progress : function
+        Wraps the list of blocks that is worked through (``tqdm.tqdm``, say).
+
+    Returns
+    -------
+    Dataset
+        All of the answer but `p`. Read the file with `load`, or by parts with ``xarray.open_dataset(path, engine="h5netcdf")``
+        or ``xarray.open_zarr(path, consolidated=False)``.
+
+    Warns
+    -----
+    AccuracyWarning
+        The estimate is above rtol.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, what was expected and what came. A path that cannot be written is found before the work.
+    OSError
+        The system refused a write. Of a netCDF file the space is reserved before the work: a full disk is found then.
+    """
+    path = validate.as_path(path)
+    validate.function(progress, "progress")
+    check_target(path)
+    asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    check_field(asked.shape, in_file=True)
+    memory = validate.as_number(memory, "memory", positive=True)
+    block, chunk = _block(asked.shape, memory)
+    work = [
+        (i, slice(j, j + block[0]), slice(k, k + block[1]))
+        for i, j, k in itertools.product(
+            range(asked.shape[0]), range(0, asked.shape[1], block[0]), range(0, asked.shape[2], block[1])
+        )
+    ]
+    kept = [isinstance(p, slice) for p in asked.pick]
+
+    def blocks() -> Iterator[tuple[tuple[Any, ...], np.ndarray]]:
+        chosen = -1
+        for i, angles, planes in progress(work):
+            if i != chosen:
+                asked.choose(i)
+                chosen = i
+            # a block at the end may be smaller
+            sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), asked.shape[1:3], strict=True)]
+            p = np.empty((1, *sizes, asked.shape[3]), complex)
+            asked.fill(planes, angles, p[0])
+            where = (slice(i, i + 1), angles, planes, slice(None))
+            yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), p[asked.pick]
+
+    sizes = dict(zip(asked.dims, (n for n, keep in zip(asked.shape, kept, strict=True) if keep), strict=True))
+    chunks = tuple(c for c, keep in zip((1, *chunk, asked.shape[3]), kept, strict=True) if keep)
+    save_blocks(path, "p", sizes, chunks, blocks(), lambda: asked.dataset(None))
+    asked.announce()
+    return asked.dataset(None)
+
+
+def _block(shape: tuple[int, ...], memory: float) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Angles and planes of a block, and of a chunk, of which a block is a whole number."""
+    _, angles, planes, points = shape
+    row = SIZE * points
+    many = max(1, min(angles, int(memory // row)))
+    few = max(1, min(planes, int(memory // (row * many))))
+    chunk = max(1, min(few, int(CHUNK // (row * many))))
+    return (many, few // chunk * chunk), (many, chunk)

@@ -1,0 +1,64 @@
+"""Sums of exponentials at even positions: each exponential is the product of an entry of a coarse table and one of a fine table.
+
+With x_j = start + (c S + f) step, exp(i k x_j) = exp(i k (start + c S step)) exp(i k f step). N positions take 2 sqrt(N)
+exponentials for each k instead of N, and the sum over k or over j is a matrix product of the tables.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .matmul import product
+
+#: Positions from which on tables are used: below, the plain sum takes as long.
+MANY = 128
+#: Complex numbers that the tables of a block of k hold.
+BLOCK = 2**20
+
+
+def even_step(x: np.ndarray) -> float:
+    """The step of positions that are even to their own rounding, 0 for others."""
+    if x.size < 2:
+        return 0.0
+    step = float((x[-1] - x[0]) / (x.size - 1))
+    off = np.max(np.abs(x - (x[0] + step * np.arange(x.size))))
+    return step if off <= 4 * np.finfo(float).eps * float(np.max(np.abs(x))) else 0.0
+
+
+def over_waves(k: np.ndarray, amplitudes: np.ndarray, start: float, step: float, count: int) -> np.ndarray:
+    """sum_k amplitudes exp(i k (start + j step)) for j < count: (Z, count) of amplitudes (Z, n)."""
+    # plain: amplitudes @ np.exp(1j * np.multiply.outer(k, start + step * np.arange(count)))
+    fine = math.isqrt(count - 1) + 1
+    coarse = -(-count // fine)
+    out = np.zeros((amplitudes.shape[0], coarse, fine), complex)
+    block = max(1, BLOCK // (coarse + fine))
+    for first in range(0, k.size, block):
+        part = slice(first, first + block)
+        ik = 1j * k[part]
+        outer = np.exp(np.multiply.outer(start + step * fine * np.arange(coarse), ik))
+        inner = np.exp(np.multiply.outer(ik, step * np.arange(fine)))
+        for row, into in zip(amplitudes[:, part], out, strict=True):
+            into += product(outer * row, inner)
+    return out.reshape(amplitudes.shape[0], -1)[:, :count]
+
+
+def over_positions(k: np.ndarray, weights: np.ndarray, start: float, step: float) -> np.ndarray:
+    """sum_j weights_j exp(-i k (start + j step)): (n, B) of weights (J, B) and k (n,)."""
+    # plain: np.exp(-1j * np.multiply.outer(k, start + step * np.arange(len(weights)))) @ weights
+    count, beams = weights.shape
+    fine = math.isqrt(count - 1) + 1
+    coarse = -(-count // fine)
+    padded = np.zeros((coarse * fine, beams), complex)
+    padded[:count] = weights
+    by_fine = padded.reshape(coarse, fine, beams).swapaxes(0, 1).reshape(fine, coarse * beams)
+    out = np.empty((k.size, beams), complex)
+    block = max(1, BLOCK // (fine + coarse * (beams + 1)))
+    for first in range(0, k.size, block):
+        part = slice(first, first + block)
+        ik = -1j * k[part]
+        inner = product(np.exp(np.multiply.outer(ik, step * np.arange(fine))), by_fine)
+        outer = np.exp(np.multiply.outer(ik, start + step * fine * np.arange(coarse)))
+        out[part] = (outer[:, None, :] @ inner.reshape(-1, coarse, beams))[:, 0]
+    return out

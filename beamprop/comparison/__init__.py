@@ -1,0 +1,1 @@
+"""Two fields compared: on one grid, plane by plane."""

@@ -1,0 +1,48 @@
+"""Whether a response is sharp at kx = 0: a pole or branch point near it pinches every contour through the origin.
+
+The response is an even function of kx, so that kx^2 goes once around 0 on a half circle: the mean over it is the value at 0 where
+the response is analytic inside (Cauchy), and lacks the share of poles inside it otherwise. Two contours with nodes farther
+apart than the pole is from the origin would miss it alike.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..response.transfer_function import Transfer
+
+#: Points on the half circle around kx = 0 over which a response is averaged.
+AROUND = 16
+#: Singularities nearer to kx = 0 than this, over k0, are below the rounding of kx^2 and w^2.
+NEAREST = 1e-9
+
+
+def around(radii: np.ndarray) -> np.ndarray:
+    """A point next to kx = 0, and `AROUND` points on the upper half circle of each radius; radii (..., R) -> (..., 1 + R AROUND)."""
+    turn = np.exp(1j * np.pi * (np.arange(AROUND) + 0.5) / AROUND)
+    circles = (radii[..., None] * turn).reshape(*radii.shape[:-1], -1)
+    return np.concatenate([1e-9 * radii.min(axis=-1, keepdims=True), circles], axis=-1)
+
+
+def is_calm(h: np.ndarray, allowed: float) -> np.ndarray:
+    """Whether nothing singular lies inside each circle, (Z, R), from the response at `around`, (Z, 1 + R AROUND).
+
+    `allowed` is what the mean may be off the value in the middle, over the largest of both.
+    """
+    at_0, circles = h[:, :1], h[:, 1:].reshape(h.shape[0], -1, AROUND)
+    size = np.maximum(np.abs(at_0), np.max(np.abs(circles), axis=2))
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.abs(circles.mean(axis=2) - at_0) / np.where(size > 0, size, 1.0)
+    return np.nan_to_num(apart, nan=np.inf) <= allowed
+
+
+def nearest_singularity(transfer: Transfer, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
+    """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular on any plane; inf if all."""
+    count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
+    radii = radius * 4.0 ** -np.arange(count)
+    with np.errstate(over="ignore", invalid="ignore"):
+        calm = np.all(is_calm(transfer(around(radii), z), allowed), axis=0)
+    disturbed = np.flatnonzero(~calm)
+    return float(radii[min(disturbed[-1] + 1, count - 1)]) if disturbed.size else math.inf

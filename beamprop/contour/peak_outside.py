@@ -1,0 +1,51 @@
+"""The largest |p| of a plane where a first look did not expect it: far outside of the positions that are asked for.
+
+Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`judge`).
+What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
+rtol the planes are therefore looked at once more, in a much wider window, with two shallow contours of low accuracy: a peak
+counts if both see it.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..media.sampled import Scene
+from ..modes.misplaced import MisplacedPoles, with_residues
+from ..sources.angles import Fan
+from . import paths
+from .error_estimate import Checks, amplitudes, interpolated
+from .paths import BentPlan, Reach
+
+#: How much wider than what is asked for, and than the way along z, the window is.
+WIDER, ALONG = 6.0, 4.0
+#: The accuracy of the look, the share by which both contours may differ, and the most plane waves and positions that it takes.
+ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
+
+
+def with_wider_look(s: Scene, checks: Checks, reach: Reach, plan: BentPlan, found: MisplacedPoles) -> Checks:
+    """Checks that know of the peaks far outside; the same ones where the window would take too many plane waves."""
+    extent = WIDER * max(reach.extent, reach.source) + ALONG * max(reach.path, 0.0)
+    wide = paths.plan_bent(reach._replace(extent=extent, band=plan.band), ROUGH, sharp=plan.sharp)
+    depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
+    window = max(wide.window, 1.2 * extent + 0.8 * math.log(10 / ROUGH) / depth)
+    one = wide._replace(depth=depth, window=window, crossing=plan.crossing, gap=plan.gap)
+    two = one.other()
+    if two.nodes > MOST_WAVES:
+        return checks
+    asked = checks.fan.asked
+    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    beams = Fan(checks.fan.beam, asked[some])
+    x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
+    peaks = []
+    for i, p in enumerate((one, two)):
+        line = with_residues(s, paths.bent_line(p), found, extent, reach.path, bool(i))
+        right, left = amplitudes(checks.k0, beams, line)
+        with np.errstate(over="ignore", invalid="ignore"):
+            summed = paths.direct_sum(line, checks.transfer(line.k, checks.z), right, left, x)
+            peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))
+    less, more = np.minimum(*peaks), np.maximum(*peaks)
+    bright = np.where(less > (1 - AGREED) * more, less, 0.0)
+    return checks._replace(bright=np.maximum(checks.bright, interpolated(asked, asked[some], bright)))

@@ -1,0 +1,198 @@
+"""Spectrum x response -> p(z, x): the sums over a line that was chosen.
+
+Everything here is for one frequency; a `Scene` holds what does not change from line to line.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..arrays import exponentials
+from ..contour import error_estimate, paths
+from ..contour.choose import Solution, fft_is_cheaper
+from ..contour.paths import Line
+from ..media.sampled import Scene
+from ..response.transfer_function import Transfer
+from ..sources.angles import Fan, single
+from ..sources.beams import Beam
+from .low_rank import cross, mixing
+
+
+def point_sum(s: Scene, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """p(z, x) at any x by a matrix product."""
+    right, left = error_estimate.amplitudes(s.k0, single(beam), line)
+    return paths.direct_sum(line, h, right[0], left[0], x - beam.centre)
+
+
+def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """p(z, x) of one beam by whichever of FFT and matrix product is cheaper."""
+    out = np.empty((1, h.shape[0], x.size), complex)
+    fill(s, single(beam), solution, h, x, out)
+    return out[0]
+
+
+#: Up to so many planes, sums by tables take less than exponentials that all planes share.
+FEW_PLANES = 4
+
+
+def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+    """p(z, x) of all asked beams into out (A, Z, X), of which (Z, X) must be contiguous."""
+    line, n = solution.line, solution.fft
+    right, left = solution.amplitudes_of(s.k0, fan)
+    x = x - fan.beam.centre
+    fast = n and fft_is_cheaper(n, line.k.size, x.size)
+    if fan.mix is not None:
+        summed = (
+            paths.grid_sum(line, h, right, left, paths.grid_of(x), n)
+            if fast
+            else paths.direct_sum(line, h, right, left, x)
+        )
+        _check_finite(summed)
+        fan.mixed(summed, out)
+        return
+    if fast:
+        grid = paths.grid_of(x)
+        for a, b, into in zip(right, left, out, strict=True):
+            paths.grid_sum(line, h, a, b, grid, n, into)
+    elif h.shape[0] <= FEW_PLANES and x.size >= exponentials.MANY and (step := exponentials.even_step(x)):
+        for a, b, into in zip(right, left, out, strict=True):
+            into[...] = exponentials.over_waves(line.k, a * h, float(x[0]), step, x.size)
+            if np.any(b):
+                into += exponentials.over_waves(-line.k, b * h, float(x[0]), step, x.size)
+    elif len(right) == 1 or h.shape[0] > 64:
+        for a, b, into in zip(right, left, out, strict=True):
+            into[...] = paths.direct_sum(line, h, a, b, x)
+    else:
+        out[...] = paths.direct_sum(line, h, right, left, x)
+    _check_finite(out)
+
+
+def _check_finite(p: np.ndarray) -> None:
+    with np.errstate(over="ignore", invalid="ignore"):
+        surely = np.isfinite(p.sum())  # then no term is not finite
+    if not surely and not np.all(np.isfinite(p)):
+        raise ValueError(
+            "the field is not finite: a plane wave of the sum meets a guided mode of a lossless slab, or overflow"
+        )
+
+
+#: From how many planes and positions on most planes are made of a few; and the most that are looked at together.
+MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
+#: Among how many planes the few are looked for, and in each medium at least; how many they may be; and how many others are
+#: summed in each medium to see that it is so.
+SEARCHED, IN_EACH, MOST_ROWS, TRIED = 90, 40, 48, 5
+
+
+def fill_map(
+    s: Scene,
+    fan: Fan,
+    solution: Solution,
+    transfer: Transfer,
+    z: np.ndarray,
+    x: np.ndarray,
+    out: np.ndarray,
+    rtol: float,
+) -> np.ndarray:
+    """p of all asked beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
+
+    Returns what the error of each beam, over the largest |p| of a plane, gains by planes that are made of others: (A,).
+    """
+    gained = np.zeros(out.shape[0])
+    for start in range(0, z.size, TOGETHER):
+        part = slice(start, start + TOGETHER)
+        more: Any = None
+        if min(TOGETHER, z.size - start) >= MANY_PLANES and x.size >= MANY_POINTS:
+            more = _fill_from_few(s, fan, solution, transfer, z[part], x, out[:, part], rtol)
+        if more is None:
+            more = _fill_all(s, fan, solution, transfer, z[part], x, out[:, part])
+        gained = np.maximum(gained, more)
+    return gained
+
+
+def _fill_all(
+    s: Scene, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray
+) -> float:
+    """Every plane by itself, in blocks: of the response, and with many angles of the fields that are mixed."""
+    k = solution.line.k
+    row = max(1, k.size, 0 if fan.mix is None else fan.angles.size * x.size)
+    block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
+    for start in range(0, z.size, block):
+        rows = slice(start, start + block)
+        fill(s, fan, solution, transfer(k, z[rows]), x, out[:, rows])
+    return 0.0
+
+
+def _some_planes(s: Scene, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Planes, as indices of z, that are spread over each medium, and some that lie between them."""
+    faces = np.cumsum([0.0, *(values.periods * values.layers.thickness.sum() for values in s.segments)])
+    order = np.argsort(z, kind="stable")
+    parts = np.split(order, np.searchsorted(z[order], faces))
+    searched, tried = [], []
+    for part in parts:
+        if part.size:
+            count = min(part.size, max(IN_EACH, SEARCHED * part.size // z.size))
+            turn = (1 - np.cos(np.linspace(0, np.pi, count))) / 2  # denser at the faces, where what decays is seen
+            at = np.unique(((part.size - 1) * turn).round().astype(int))
+            between = (at[:-1] + at[1:]) // 2
+            between = np.setdiff1d(between, at)
+            searched.append(part[at])
+            tried.append(
+                part[between[np.unique(np.linspace(0, between.size - 1, TRIED).astype(int))]] if between.size else []
+            )
+    return np.concatenate(searched), np.concatenate(tried).astype(int)
+
+
+def _fill_from_few(
+    s: Scene,
+    fan: Fan,
+    solution: Solution,
+    transfer: Transfer,
+    z: np.ndarray,
+    x: np.ndarray,
+    out: np.ndarray,
+    rtol: float,
+) -> np.ndarray | None:
+    """Planes made of a few, found among some with all plane waves; None where that is not good enough.
+
+    That is seen on others, between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
+    """
+    k, x0 = solution.line.k, x - fan.beam.centre
+    right, left = solution.amplitudes_of(s.k0, fan)
+    strength = np.max(np.abs(right) + np.abs(left), axis=0)
+    searched, tried = _some_planes(s, z)
+    if solution.judged is not None:  # among them those that are nearly dark, where small errors count
+        tried = np.union1d(tried, np.flatnonzero(np.isin(z, solution.judged)))
+    if 2 * searched.size > z.size:
+        return None
+    h = transfer(k, z[np.concatenate([searched, tried])])
+    with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode
+        weighted = h[: searched.size] * strength
+        size = np.linalg.norm(weighted, axis=1)
+    if not np.all((size > error_estimate.DARK) & np.isfinite(size)):
+        return None
+    growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(x0)))
+    weighted /= size[:, None]
+    found = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
+    rows, columns = found.rows, found.columns
+    there = transfer(k[columns], z)
+    summed = np.empty((out.shape[0], rows.size + tried.size, x.size), complex)
+    fill(s, fan, solution, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
+    ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
+    scale = np.max(np.abs(theirs), axis=2)
+    scale = np.where(scale > error_estimate.DARK, scale, np.inf)
+    room = rtol - float(np.max(solution.error))  # what the line has left of rtol, if it keeps it
+    allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
+    for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
+            mix = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
+            for some, into in zip(ours, out, strict=True):
+                np.matmul(mix, some[:count], out=into)
+            # some planes stand for all: the worst of the others may be a few times worse
+            error = 5 * np.max(np.max(np.abs(out[:, tried] - theirs), axis=2) / scale, axis=1)
+        error = np.maximum(error, 3e-4 * rtol)
+        if np.max(error) <= allowed:
+            return error
+    return None

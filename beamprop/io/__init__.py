@@ -1,0 +1,1 @@
+"""Labelled datasets, and files that hold them."""

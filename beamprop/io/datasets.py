@@ -1,0 +1,126 @@
+"""Arrays to labelled datasets: the only maker of xarray objects, and the record that rides in every one of them.
+
+Each dataset carries one attribute, ``provenance``: JSON with the version, the question, the structure, the beam and the
+settings. `describe` turns an object into such a record and `rebuild` makes the object again.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import math
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import validate
+from .._version import __version__
+from ..conventions import LABELS, label
+from ..media import effective as _homogenize
+from ..media import structures as _media
+from ..sources import beams as _beam
+
+#: The records that a file can hold; a dispersive property by any other function is kept as a table.
+_RECORDS: dict[str, type] = {
+    cls.__name__: cls
+    for cls in (
+        _media.Fluid,
+        _media.Layer,
+        _media.Membrane,
+        _media.Cell,
+        _media.Slab,
+        _beam.GaussianBeam,
+        _beam.Profile,
+        _beam.Slits,
+        *_homogenize.FUNCTIONS,
+    )
+}
+
+_KINDS = frozenset(_RECORDS.values())
+
+
+def describe(value: Any, frequency: np.ndarray) -> Any:
+    """A JSON-ready record of a structure, beam or setting.
+
+    A property that is some user's function of frequency is recorded by its values at `frequency` [Hz].
+    """
+    kind: Any = type(value)
+    if kind in _KINDS:
+        fields = {name: describe(getattr(value, name), frequency) for name in _field_names(kind)}
+        return {"type": kind.__name__, **fields}
+    if isinstance(value, complex | np.complexfloating):
+        return {"re": _number(value.real), "im": _number(value.imag)}
+    if isinstance(value, np.ndarray):
+        return {"array": [describe(v, frequency) for v in value.tolist()]}
+    if isinstance(value, tuple | list):
+        return [describe(v, frequency) for v in value]
+    if isinstance(value, bool | str | int | type(None)):
+        return value
+    if isinstance(value, float | np.floating):
+        return _number(float(value))
+    if callable(value):
+        f = np.unique(frequency)
+        return describe(_homogenize.Tabulated(tuple(f), tuple(np.asarray(value(f), complex))), frequency)
+    raise TypeError(f"no record for {type(value).__name__}")
+
+
+@functools.cache
+def _field_names(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
+
+
+def _number(value: Any) -> float | str:
+    return float(value) if math.isfinite(value) else str(float(value))
+
+
+def rebuild(record: Any) -> Any:
+    """The object that `describe` recorded."""
+    if isinstance(record, list):
+        return tuple(rebuild(v) for v in record)
+    if not isinstance(record, dict):
+        return record
+    if "array" in record:
+        return np.array([rebuild(v) for v in record["array"]])
+    if "type" not in record:
+        return complex(float(record["re"]), float(record["im"]))
+    fields = {k: rebuild(v) for k, v in record.items() if k != "type"}
+    cls = _RECORDS[record["type"]]
+    return _media.Slab.stack(**fields) if cls is _media.Slab else cls(**fields)
+
+
+def make(
+    variables: dict[str, tuple[tuple[str, ...], Any]],
+    coords: dict[str, tuple[tuple[str, ...], Any]],
+    question: str,
+    frequency: np.ndarray,
+    **settings: Any,
+) -> xr.Dataset:
+    """A dataset whose names all stand in `conventions.LABELS`, with its provenance.
+
+    Parameters
+    ----------
+    variables, coords : name -> (dims, values)
+    question : str
+        The public function that was asked.
+    frequency : array, Hz
+        Where functions of frequency are recorded.
+    settings
+        Structure, beam and arguments to record.
+    """
+    record = {"beamprop": __version__, "question": question, **{k: describe(v, frequency) for k, v in settings.items()}}
+    labelled = {n: (d, v, label(n) if n in LABELS else {}) for n, (d, v) in variables.items()}
+    axes = {n: (d, v, label(n)) for n, (d, v) in coords.items()}
+    attrs = {"provenance": json.dumps(record), "convention": "exp(-i w t), SI units, z = 0 at the near face"}
+    return xr.Dataset(labelled, axes, attrs)
+
+
+def provenance(ds: xr.Dataset) -> dict[str, Any]:
+    """What a dataset records of its making, with slab, cell and beam rebuilt as objects."""
+    validate.instance(ds, xr.Dataset, "ds")
+    text = ds.attrs.get("provenance")
+    if not isinstance(text, str):
+        raise ValueError("ds: expected a dataset with the attribute provenance, got one without it")
+    record = json.loads(text)
+    return {key: rebuild(value) for key, value in record.items()}

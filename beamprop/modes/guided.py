@@ -1,0 +1,111 @@
+"""Guided modes of a slab: zeros of the dispersion function in the plane of complex kx, found by the argument principle.
+
+Loss moves a mode off the real axis: up if it carries energy along Re kx (forward), down if against it (backward, which
+negative densities allow). A mode of a lossless slab lies on the axis, and is told apart by the way it moves when a
+trace of loss is added.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..media.sampled import Scene, is_lossless, with_loss
+from ..response import SHIFT, dispersion, perturbed
+from .argument_principle import (
+    CLUSTER,
+    Box,
+    Dispersion,
+    TooManyModes,
+    UncertainCount,
+    real_zeros,
+    refine,
+    winding,
+    zeros,
+)
+
+#: Relative loss by which modes are told apart: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, for a slab
+#: whose densities cancel feels it magnified.
+LOSS = 1e-8
+#: A box of the search begins this far (relative) to the right of the last branch point.
+BESIDE = 1e-8
+
+
+class Mode(NamedTuple):
+    """One zero: kx [rad/m], +1 forward or -1 backward, the last step of its refinement and its estimated error, over kx."""
+
+    kx: complex
+    direction: int
+    residual: float
+    error: float = 0.0
+
+
+def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
+    """D of a scene at one frequency, made more lossy by `loss`."""
+    s = with_loss(s, loss)
+
+    def evaluate(kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        value, log = dispersion(s.segments, s.before, s.after, s.omega, np.asarray(kx, complex)[None])
+        return value[0], log[0]
+
+    return evaluate
+
+
+def find_modes(s: Scene, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
+    """All modes in a box, and how many the argument principle counts; `most`: see `zeros`.
+
+    UncertainCount where outlines of other nodes, or changes of sign of a lossless slab, say otherwise.
+    """
+    f = dispersion_of(s)
+    total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
+    on_axis = real_zeros(f, box.left, box.right) if is_lossless(s) and box.low < 0 < box.high else []
+    if total != again or len(on_axis) > total:
+        raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
+    found = located(s, box, total, most=most) if total > 0 else []
+    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in told(s, found)]
+    return sorted(modes, key=lambda m: m.kx.real), total
+
+
+def _checked(s: Scene, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
+    """A mode with its residual, and with how far it moves when the layers' last bits do; of a cluster only the middle is known."""
+    size = abs(mode.kx)
+    residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
+    moved = s._replace(segments=[perturbed(segment, SHIFT) for segment in s.segments])
+    k, step = refine(dispersion_of(moved), mode.kx, 1e-3 * size)
+    error = max((abs(k - mode.kx) + step) / size, CLUSTER if cluster else 0.0)
+    return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
+
+
+def located(s: Scene, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:
+    """The `total` zeros of a box, those of a lossless slab on the axis by changes of sign if that finds them all.
+
+    TooManyModes where more than `many` have to be found otherwise, or it takes too long (`most`: see `zeros`).
+    """
+    f = dispersion_of(s)
+    if is_lossless(s) and box.low < 0 < box.high:
+        for samples in (600, 4800, 38_400):
+            found = real_zeros(f, box.left, box.right, samples, 8 * many)
+            if len(found) >= total:
+                return found
+    if total > many:
+        raise TooManyModes
+    return zeros(f, box, box.right, total, most)
+
+
+def told(s: Scene, found: list[complex]) -> list[Mode]:
+    """Zeros as modes, forward or backward."""
+    return [Mode(k, _direction(s, k, found.count(k) > 1), 0.0) for k in found]
+
+
+def _direction(s: Scene, k: complex, cluster: bool = False) -> int:
+    """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
+    # a cluster is known to half the digits only, and takes more loss to be told
+    blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
+    if abs(k.imag) > blur * abs(k):
+        return 1 if k.imag > 0 else -1
+    moved, _ = refine(dispersion_of(s, loss), k, 1e-4 * abs(k))
+    if cluster and abs((moved - k).imag) < blur * abs(k):
+        raise TooManyModes
+    return 1 if (moved - k).imag >= 0 else -1

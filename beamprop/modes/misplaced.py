@@ -1,0 +1,342 @@
+"""Poles that a contour leaves on its wrong side: guided and leaky modes, found and put right.
+
+A forward mode belongs above the contour on the right half of the axis, a backward mode (its energy runs against its phase,
+which negative densities and moduli allow) below it: limiting absorption. A contour below the axis leaves backward modes above
+it. Few of them get small circles, whose sums are their residues. Where they are many, and begin beyond the forward ones,
+the contour crosses the axis between the two kinds instead.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..contour.paths import Line
+from ..media.sampled import (
+    Scene,
+    at_frequency,
+    backward_branch,
+    is_lossless,
+    last_branch,
+    may_guide_backward,
+    nearest_branch,
+    on_the_right,
+    real_branches,
+    up_to_wall,
+    with_loss,
+)
+from ..response import dispersion
+from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
+from .guided import BESIDE, Mode, dispersion_of, located, told
+
+#: A mode nearer to the real axis than this, over k0, may be on either side by rounding: a layer without loss beside others with.
+ON_AXIS = 1e-10
+#: A contour leaves at most so many modes on its wrong side, and the search for them takes at most so many values of D.
+MOST_WRONG = 24
+MOST_VALUES = 100_000
+#: From how many circles on a crossing is looked for.
+FEW_CIRCLES = 8
+#: Steps along an outline, over its largest Re kx, that are not halved further: a zero lies on it.
+FINEST = 1e-12
+
+
+class MisplacedPoles(NamedTuple):
+    """Poles on the wrong side of a contour.
+
+    The contour passes below the axis up to Re kx = `crossing` and above it beyond; no pole lies within `gap` of where it
+    crosses.
+    """
+
+    poles: tuple[complex, ...]
+    radii: tuple[float, ...]  #: of discs around them that hold no other pole
+    crossing: float = math.inf
+    gap: float = math.inf
+
+
+NONE = MisplacedPoles((), ())
+#: More modes than can be told apart.
+UNCLEAR = MisplacedPoles((complex("nan"),), (0.0,))
+
+
+def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles:
+    """Poles on the wrong side of a contour that runs at `depth` below the axis, start < Re kx < band, or crosses it.
+
+    Parameters
+    ----------
+    s : Scene, of one frequency
+    depth, band, start : float, rad/m
+
+    Returns
+    -------
+    MisplacedPoles
+        UNCLEAR where neither circles nor a crossing serve.
+    """
+    if not may_guide_backward(s):
+        return NONE
+    s = up_to_wall(s)
+    try:
+        found = with_circles(s, _below(s, depth, band, start))
+    except TooManyModes:
+        found = UNCLEAR
+    if backward_branch(s) is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
+        return found
+    try:
+        return _with_crossing(s, depth, band, start) or found
+    except TooManyModes:
+        return found
+
+
+def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
+    """Modes below the axis, or on it beyond the branch points, and above a contour at `depth` below it."""
+    edge, above = last_branch(s) * (1 + BESIDE), ON_AXIS * s.k0
+    cut = backward_branch(s)
+    if is_lossless(s):
+        above = depth
+    if cut is not None:
+        return _beside_cut(s, cut.real, (start, band, depth), (edge, above))
+    if not is_lossless(s) and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
+        return []
+    found = few_modes(s, Box(start, min(edge, band), -depth, 0.0))
+    if band > edge:
+        found += few_modes(s, Box(edge, band, -depth, above))
+    return found
+
+
+def _beside_cut(s: Scene, cut: float, contour: tuple[float, float, float], lifted: tuple[float, float]) -> list[Mode]:
+    """The same where a branch cut leads from Re kx = `cut` downward: boxes end on either side of it."""
+    (start, band, depth), (edge, above) = contour, lifted
+    found = []
+    ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), last_branch(s) * (1 - BESIDE), edge, band]
+    for left, right in itertools.pairwise(sorted({min(max(end, start), band) for end in ends})):
+        if right - left > 3 * BESIDE * cut:
+            found += few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
+    return found
+
+
+def with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
+    """Discs around the backward ones among some modes; `others` are misplaced too."""
+    groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
+    middles = tuple(sum(group) / len(group) for group in groups)
+    all_of_them = [*(m.kx for m in found), *others]
+    discs = (_free_disc(s, k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
+    return MisplacedPoles(middles, tuple(discs))
+
+
+def _branch_beside(s: Scene) -> float:
+    """Re kx of the nearest branch point beside the axis, where outlines take more nodes."""
+    return min(real_branches(s), default=last_branch(s))
+
+
+def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
+    """Whether there is a mode in a box, its upper side raised by `above` to the right of `edge`: one search, mostly in vain."""
+    values = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
+    left, right, low, high, near, beyond, lift = values
+    path = outlines(left, right, low, high, 48, near, (beyond, lift))[0]
+    return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
+
+
+def few_modes(s: Scene, box: Box) -> list[Mode]:
+    """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
+    total = winding(dispersion_of(s), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
+    if total <= 0:
+        return []
+    found = located(s, box, total, MOST_WRONG, MOST_VALUES)
+    if len(found) < total:
+        raise TooManyModes
+    return told(s, found)
+
+
+def _grouped(modes: list[complex]) -> list[list[complex]]:
+    """Modes that lie so near to each other that one circle goes around them all: a cluster is found to half the digits only."""
+    groups: list[list[complex]] = []
+    for k in modes:
+        near = [group for group in groups if abs(k - group[0]) < 10 * CLUSTER * abs(k)]
+        if near:
+            near[0].append(k)
+        else:
+            groups.append([k])
+    return groups
+
+
+def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]) -> float:
+    """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
+    branches = (complex(on_the_right(b)) for b in s.branches)
+    radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
+    radius = min(radius, 0.4 * abs(k))
+    f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
+    least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))
+    at_least = winding(f, k + least * circle, 1e-12 * abs(k), MOST_VALUES)
+    while radius > least and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
+        radius /= 2
+    if len(group) > 1 and radius <= least:
+        raise TooManyModes
+    return radius
+
+
+# --- a contour that crosses the axis ----------------------------------------------------------------------
+
+#: Among how many places, between the last branch point and the band's end, the crossing is looked for.
+PLACES = 24
+#: Relative loss with which modes are counted here, first the least. A passive slab with loss has no pole on the axis, whatever the
+#: loss: modes stay above or below it, and crowd less.
+LOSSES = (1e-8, 1e-5)
+#: The most values of D for one interval between two places.
+MOST_HERE = 20_000
+
+
+def _with_crossing(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles | None:
+    """A contour that crosses the axis where it leaves the fewest poles misplaced; None where they are still too many."""
+    edge = last_branch(s) * (1 + 1e-3)
+    if band < 1.1 * edge:
+        return None
+    places = np.geomspace(edge, band, PLACES + 1)
+    for loss in LOSSES:
+        f = dispersion_of(s, loss)
+        # modes left below a contour that has crossed, and above one that has not: at the places from 1 on
+        below, above = _counted(f, places, -depth, 1), _counted(f, places, depth, -1)
+        wrong = below[:-1] + above[1:]
+        if np.min(wrong) <= MOST_WRONG:
+            return _crossing_at(s, f, places, wrong, (depth, band, start))
+    return None
+
+
+def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> np.ndarray:
+    """How many modes there are from the axis to `height`, up to the end of each interval between two places.
+
+    Intervals are taken from the left (`onward` 1) or from the right (-1), until there are too many: inf from there on.
+    """
+    counts = np.full(places.size - 1, np.inf)
+    total = 0.0
+    for i in range(counts.size)[::onward]:
+        box = Box(float(places[i]), float(places[i + 1]), min(height, 0.0), max(height, 0.0))
+        try:
+            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_HERE, thorough=True)
+        except TooManyModes:
+            break
+        if here < 0:  # D has no poles: too few steps where modes crowd
+            break
+        total += here
+        if total > MOST_WRONG:
+            break
+        counts[i] = total
+    return counts
+
+
+def _crossing_at(
+    s: Scene, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
+) -> MisplacedPoles:
+    """The crossing in the longest run of places where the fewest are wrong, and circles around those."""
+    depth, band, start = contour
+    least = np.flatnonzero(wrong == wrong.min())
+    runs = np.split(least, np.flatnonzero(np.diff(least) > 1) + 1)
+    run = max(runs, key=lambda v: places[v[-1] + 1] / places[v[0] + 1])
+    lo, hi = float(places[run[0] + 1]), float(places[run[-1] + 1])
+    crossing, gap = _free_gap(f, lo, hi, depth, float(places[0]), band)
+    known = _below(s, depth, crossing, start)
+    box = Box(crossing, band, 0.0, depth)
+    total = winding(f, box.outline(48), FINEST * band, MOST_VALUES, thorough=True)
+    forward = _found_above(s, f, box, total)
+    return with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
+
+
+def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, band: float) -> tuple[float, float]:
+    """Where between `lo` and `hi` to cross the axis, and the distance around it in which there is no mode."""
+    crossing = math.sqrt(lo * hi)
+    gap = min(crossing - edge, band - crossing) if hi > lo else 0.3 * min(crossing - edge, band - crossing)
+    for _ in range(8):
+        box = Box(crossing - gap, crossing + gap, -max(depth, gap), max(depth, gap))
+        if winding(f, box.outline(24), FINEST * band, MOST_VALUES) == 0:
+            return crossing, gap
+        gap /= 2
+    raise TooManyModes
+
+
+def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex, ...]:
+    """The `total` forward modes of a box above the axis, which a contour above the axis leaves below it."""
+    if total <= 0:
+        return ()
+    found = zeros(f, box, box.right, total, MOST_VALUES)
+    if len(found) < total:
+        raise TooManyModes
+    return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in found)
+
+
+#: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
+REMEDIES = 10.0 ** np.arange(-6, 0)
+#: And shares of a contour's depth that are tried with them.
+SHALLOWER = (1.0, 0.1, 0.01)
+
+
+def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
+    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
+    for loss in REMEDIES:
+        lossy = with_loss(s, float(loss))
+        for share in SHALLOWER:
+            if misplaced(lossy, share * depth, band, start) is not UNCLEAR:
+                return float(loss)
+    return None
+
+
+# --- many frequencies -------------------------------------------------------------------------------------
+
+
+def some_misplaced(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
+    """Whether a contour at `depth` may leave modes on its wrong side, by the argument principle at F frequencies at once: (F,).
+
+    Of a lossless slab any mode below or on the axis counts, forward or not.
+    """
+    if not may_guide_backward(s):
+        return np.zeros(depth.shape, bool)
+    if any(bool(np.any(values.layers.vanishing)) for values in s.segments):
+        return np.ones(depth.shape, bool)
+
+    def evaluate(kx: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        part = s if owner.size == depth.size and np.array_equal(owner, everyone) else at_frequency(s, owner)
+        return dispersion(part.segments, part.before, part.after, part.omega, kx)
+
+    def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, lifted: Any = None) -> np.ndarray:
+        try:
+            paths = outlines(left, right, low, high, 12, near, lifted)
+            return windings(evaluate, paths, FINEST * float(np.min(s.k0)), MOST_VALUES * depth.size)
+        except TooManyModes:
+            return np.ones(depth.shape, int)
+
+    everyone, near = np.arange(depth.size), np.minimum(s.k0, last_branch(s))
+    zero, start = np.zeros(depth.shape), np.minimum(1e-3 * s.k0, 0.1 * nearest_branch(s))
+    edge = last_branch(s) * (1 + BESIDE)
+    if not is_lossless(s):
+        return count(start, band, -depth, zero, (edge, ON_AXIS * s.k0)) > 0
+    below = count(start, np.minimum(edge, band), -depth, zero) > 0
+    return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
+
+
+# --- circles ----------------------------------------------------------------------------------------------
+
+
+def with_residues(
+    s: Scene, line: Line, found: MisplacedPoles, across: float, along: float, second: bool = False
+) -> Line:
+    """Add to a contour small circles around the poles on its wrong side.
+
+    Trapezoid rule on a circle in the disc that holds nothing else, so small that neither e^{ikx} (over the distance `across`)
+    nor e^{i kz z} (over `along`) turns or grows much on it: aliasing falls with the number of nodes as 1/n!. The `second`
+    of two contours that are compared takes other circles. Clockwise where the contour passes below the pole, counter-clockwise
+    where it passes above.
+    """
+    count, share = (36, 0.8) if second else (32, 1.0)
+    nodes, weights = [], []
+    for k, free in zip(found.poles, found.radii, strict=True):
+        sense = 1 if k.real < found.crossing else -1
+        if sense * (k.imag - np.interp(k.real, line.k.real, line.k.imag)) > 0:
+            turn = np.exp(-2j * np.pi * sense * (np.arange(count) + 0.5) / count)
+            slope = max(abs(k / np.sqrt(b * b - k * k + 0j)) for b in s.branches)  # |dkz/dkx|
+            radius = share * min(free, 1.0 / (across + along * slope))
+            nodes.append(k + radius * turn)
+            weights.append(radius * turn * (-2j * np.pi * sense / count) / (2 * np.pi))
+    if not nodes:
+        return line
+    # in front, so that the contour's end stays the last node
+    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]), circles=count * len(nodes))

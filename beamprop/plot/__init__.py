@@ -1,0 +1,229 @@
+"""Dataset -> matplotlib Axes. Knows nothing of media: what it draws stands in the dataset.
+
+Maps of |p| are drawn with a perceptual sequential map, Re p with a symmetric diverging one. Every function takes `ax` and
+returns the Axes it drew in, so that figures are put together outside.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import validate
+from .comparison import comparison as comparison
+
+#: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
+STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
+
+
+def _axes(ax: Any, size: tuple[float, float]) -> Any:
+    if ax is not None:
+        if not hasattr(ax, "pcolormesh"):
+            raise validate.refuse("ax", "Axes of matplotlib", ax)
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(figsize=size, layout="constrained")[1]
+
+
+def _need(ds: xr.Dataset, *names: str) -> None:
+    validate.instance(ds, xr.Dataset, "ds")
+    missing = [n for n in names if n not in ds.variables]
+    if missing:
+        raise ValueError(f"ds: expected a dataset with {', '.join(names)}; {', '.join(missing)} is missing")
+
+
+def _title_of(v: Any) -> str:
+    units = v.attrs.get("units", "")
+    name = v.attrs.get("long_name", v.name)
+    return name if units in ("", "1") else f"{name} [{units}]"
+
+
+def field(
+    ds: xr.Dataset, quantity: str = "abs", ax: Any = None, colorbar: bool = True, limit: float | None = None
+) -> Any:
+    """Map of a field on (z, x), with the slab's faces as dashed lines.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `beamprop.field` at one frequency and angle.
+    quantity : "abs" or "real"
+        |p|, or Re p.
+    ax : Axes, optional
+    colorbar : bool
+    limit : float, optional
+        The colour scale's end [Pa]; the 99.8th percentile of |p| by default.
+
+    Returns
+    -------
+    Axes
+    """
+    _need(ds, "p", "x", "z")
+    validate.flag(colorbar, "colorbar")
+    if limit is not None:
+        limit = validate.as_number(limit, "limit", positive=True)
+    validate.word(quantity, "quantity", "abs", "real")
+    p = ds["p"].squeeze(drop=True)
+    if set(p.dims) != {"z", "x"}:
+        raise ValueError(
+            f"ds: expected a field on (z, x); select one of {', '.join(set(map(str, p.dims)) - {'z', 'x'})}"
+        )
+    p = p.transpose("x", "z")
+    ax = _axes(ax, (7.1, 4.2))
+    values = np.abs(p.values) if quantity == "abs" else p.values.real
+    top = limit or float(np.percentile(np.abs(p.values), 99.8)) or 1.0
+    scale = (
+        {"cmap": "inferno", "vmin": 0, "vmax": top}
+        if quantity == "abs"
+        else {"cmap": "RdBu_r", "vmin": -top, "vmax": top}
+    )
+    mesh = ax.pcolormesh(p["z"].values, p["x"].values, values, shading="nearest", rasterized=True, **scale)
+    edge = "white" if quantity == "abs" else "black"
+    for face in (0.0, ds.attrs.get("slab_thickness")):
+        if face is not None and p["z"].min() <= face <= p["z"].max():
+            ax.axvline(face, color=edge, ls="--", lw=0.8)
+    ax.set(xlabel="z [m]", ylabel="x [m]", aspect="equal")
+    if colorbar:
+        text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
+        ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)
+    ax.set_title(_where(ds), fontsize="medium")
+    return ax
+
+
+def _where(ds: xr.Dataset) -> str:
+    parts = []
+    if "frequency" in ds.coords and ds["frequency"].size == 1:
+        parts.append(f"{float(ds['frequency'].squeeze()):g} Hz")
+    if "angle" in ds.coords and ds["angle"].size == 1:
+        parts.append(f"{float(ds['angle'].squeeze()):g}°")
+    return ", ".join(parts)
+
+
+def _lateral(ds: xr.Dataset) -> str:
+    for name in ("kx_over_k0", "angle", "kx"):
+        if name in ds.dims:
+            return name
+    raise ValueError("ds: expected a dimension kx, kx_over_k0 or angle")
+
+
+def _lines(ds: xr.Dataset, y: xr.DataArray, along: str, ax: Any, label: str | None) -> None:
+    """One curve per entry of the other dimension."""
+    others = [d for d in y.dims if d != along]
+    if not others:
+        ax.plot(ds[along], y, label=label)
+        return
+    for i, row in enumerate(y.transpose(*others, along).values.reshape(-1, y.sizes[along])):
+        values = np.unravel_index(i, [y.sizes[d] for d in others])
+        text = ", ".join(
+            f"{d} {ds[d].values[j]:g} {ds[d].attrs.get('units', '')}" for d, j in zip(others, values, strict=True)
+        )
+        ax.plot(ds[along], row, label=text if label is None else f"{label}, {text}")
+
+
+def scattering(
+    ds: xr.Dataset, quantity: str = "transmissivity", log: bool = False, ax: Any = None, label: str | None = None
+) -> Any:
+    """Curves of a plane-wave quantity against kx, kx/k0 or angle, on a linear or logarithmic scale.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `beamprop.scattering`.
+    quantity : str
+        transmissivity, reflectivity, energy_transmission or absorption.
+    log : bool
+    ax : Axes, optional
+    label : str, optional
+    """
+    validate.word(quantity, "quantity", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+    _need(ds, quantity)
+    validate.flag(log, "log")
+    along = _lateral(ds)
+    ax = _axes(ax, (5.2, 3.6))
+    y = ds[quantity]
+    if log:
+        ax.set_yscale("log")
+        y = y.where(y > 0)
+    _lines(ds, y, along, ax, label)
+    ax.set(xlabel=_short(ds, along), ylabel=_title_of(ds[quantity]))
+    if len(ax.lines) > 1 or label:
+        ax.legend(fontsize="small")
+    return ax
+
+
+def _short(ds: xr.Dataset, along: str) -> str:
+    return {"kx_over_k0": "$k_x/k_0$", "kx": "$k_x$ [rad/m]", "angle": "angle [degree]"}.get(
+        along, _title_of(ds[along])
+    )
+
+
+def bloch(
+    ds: xr.Dataset, ax: Any = None, label: str | None = None, imaginary: bool = True, mirror: bool = False
+) -> Any:
+    """Equifrequency contour: Re kz/k0 (and Im, thinner and dotted) against kx/k0.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `beamprop.bloch`.
+    ax : Axes, optional
+    label : str, optional
+    imaginary : bool
+        Draw the decay too.
+    mirror : bool
+        Draw -kz too, which belongs to the contour.
+    """
+    _need(ds, "kz_over_k0")
+    for name, value in (("imaginary", imaginary), ("mirror", mirror)):
+        validate.flag(value, name)
+    along = _lateral(ds)
+    ax = _axes(ax, (5.2, 3.6))
+    kz = ds["kz_over_k0"]
+    rows = kz.values.reshape(-1, kz.sizes[along]) if kz.dims[-1] == along else kz.transpose(..., along).values
+    frequency = np.atleast_1d(ds["frequency"].values)
+    for i, row in enumerate(np.atleast_2d(rows)):
+        text = label or (f"{frequency[i]:g} Hz" if frequency.size > 1 else None)
+        (line,) = ax.plot(ds[along], row.real, label=text)
+        if imaginary:
+            ax.plot(ds[along], row.imag, color=line.get_color(), ls=":", lw=1)
+        if mirror:
+            ax.plot(ds[along], -row.real, color=line.get_color(), ls=line.get_linestyle())
+    ax.set(xlabel=_short(ds, along), ylabel="$k_z/k_0$" + (" (dotted: imaginary part)" if imaginary else ""))
+    if any(line.get_label()[0] != "_" for line in ax.lines):
+        ax.legend(fontsize="small")
+    return ax
+
+
+def width(ds: xr.Dataset, ax: Any = None, label: str | None = None) -> Any:
+    """Widths against frequency (or angle): launched, behind the slab, and after the distance without it.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `beamprop.beam_width`.
+    ax : Axes, optional
+    label : str, optional
+        Before the names of the curves.
+    """
+    _need(ds, "fwhm_in", "fwhm_out", "fwhm_air")
+    along = next((d for d in ("frequency", "angle") if d in ds.dims), None)
+    if along is None:
+        raise ValueError("ds: expected widths along frequency or angle, got scalars")
+    ax = _axes(ax, (5.2, 3.6))
+    names = {
+        "fwhm_in": ("incident, near face", "-"),
+        "fwhm_out": ("behind the slab", "o"),
+        "fwhm_air": ("without the slab", "--"),
+    }
+    for name, (text, style) in names.items():
+        y = ds[name] * 100
+        y = y.transpose(along, ...)
+        lines = ax.plot(ds[along], y, style, ms=3.5, mfc="none", label=f"{label}: {text}" if label else text)
+        for line in lines[1:]:
+            line.set_label("_")
+    ax.set(xlabel=_title_of(ds[along]), ylabel="full width at half maximum [cm]", ylim=(0, None))
+    ax.legend(fontsize="small")
+    return ax

@@ -1,0 +1,1 @@
+"""Widths, centroids and sections of |p| along x."""

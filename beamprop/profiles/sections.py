@@ -1,0 +1,423 @@
+"""Profiles of a beam across one plane, measured: all frequencies at once, and a slow path for what does not fit.
+
+The fast path samples p on the whole window of an open line by one small FFT a frequency, finds the peak and the half
+level on that grid, and places them by Newton's method on the exact sum over the modes. A second line of other
+parameters judges the values there. Whatever fails a test (error above rtol, a window too narrow, a spectrum that is not
+entire) is done again alone, with a window that grows until it holds the beam.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import memory
+from ..arrays import fft
+from ..contour import choose, near_normal, paths
+from ..contour.paths import Line, OpenPlan, Reach
+from ..conventions import outgoing_kz
+from ..fields import evaluate as field_sums
+from ..media.sampled import Scene, at_frequency, is_lossless, nearest_branch
+from ..modes import misplaced
+from ..response import solve, transfer_function
+from ..response.transfer_function import Transfer, shifts
+from ..sources.angles import single
+from ..sources.beams import Beam
+from .fwhm import HALF_LEVEL, centroid, crossings, full_width
+
+#: h(kx) at one plane for each frequency: (F, n) -> (F, n).
+Plane = Callable[[np.ndarray], np.ndarray]
+
+
+#: A window holds the beam when |p| at its ends is below this share of the level asked for. Not lower: the guided waves of a
+#: lossless slab run on along it without end.
+EDGE = 0.8
+#: Newton's method doubles its digits at each step: after a step this small, in samples, the next would be rounding. The peak
+#: needs half the digits of an edge, for |p| is flat there.
+NEAR_PEAK, NEAR_EDGE = 1e-6, 1e-8
+
+
+class Measures(NamedTuple):
+    """Of a profile, (F,) each: full width [m], peak [Pa], centroid [m]; how often |p| crosses the level in the window, and error.
+
+    The error is that of |p| over its peak.
+    """
+
+    width: np.ndarray
+    peak: np.ndarray
+    centroid: np.ndarray
+    crossings: np.ndarray
+    error: np.ndarray
+
+
+def far_face(s: Scene, z0: float) -> Plane:
+    """Transfer from the launch plane z0 to the far face."""
+
+    def plane(kx: np.ndarray) -> np.ndarray:
+        kz = outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before))
+        return solve(s.segments, s.before, s.after, s.omega, kx).t * np.exp(-1j * kz * z0)
+
+    return plane
+
+
+def without(s: Scene, distance: np.ndarray) -> Plane:
+    """Transfer over distances (F,) in the medium in front."""
+
+    def plane(kx: np.ndarray) -> np.ndarray:
+        return np.exp(1j * outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before)) * distance[:, None])
+
+    return plane
+
+
+def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width (F,) of windows that hold the beam, by stationary phase.
+
+    The beam's strong plane waves span the window.
+    """
+    lo, hi = beam.band(s.k0, 0.3)
+    even = bool(np.all(lo == -hi))  # h is even in kx too: half of the plane waves show all
+    k0 = s.k0[:, None]
+    k = np.clip(np.linspace(0 * lo if even else lo, hi, 21 if even else 41, axis=-1), -0.98 * k0, 0.98 * k0)
+    small = 1e-4 * k0
+    low, high = np.split(plane(np.concatenate([k - small, k + small], axis=-1).astype(complex)), 2, axis=-1)
+    least, most = shifts(low, high, small)
+    if even:
+        least, most = np.minimum(least, -most), np.maximum(most, -least)
+    least, most = (np.clip(v, -1e4 / s.k0, 1e4 / s.k0) for v in (least, most))
+    return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
+
+
+#: Exponentials on an even line are products of two small tables, this many steps apart.
+STEP = 12
+
+
+class Modes(NamedTuple):
+    """p(x) = sum right e^{ikx} + left e^{-ikx} over an even line, x from the beam's centre; arrays (F, n)."""
+
+    line: Line
+    right: np.ndarray
+    left: np.ndarray
+
+    def slopes(self, order: int) -> np.ndarray:
+        """Amplitudes of p, dp/dx, ... up to an order: right (ik)^j, then conj(left (-ik)^j); (F, 2 (order + 1), n)."""
+        rows = order + 1
+        out = np.empty((self.right.shape[0], 2 * rows, self.right.shape[1]), complex)
+        ik = 1j * self.line.k
+        out[:, 0], out[:, rows] = self.right, np.conj(self.left)
+        back = -np.conj(ik)
+        for j in range(1, rows):
+            np.multiply(out[:, j - 1], ik, out=out[:, j])
+            np.multiply(out[:, rows + j - 1], back, out=out[:, rows + j])
+        return out
+
+    def at(self, x: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+        """p and its slopes at positions (F, m), from their amplitudes: (order + 1, F, m)."""
+        # plain: sums over k of (ik)^j (right e^{ikx} + (-1)^j left e^{-ikx}). With k = m ds - i sigma, e^{ikx} is a power of
+        # e^{i ds x} times e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
+        line, n = self.line, self.line.k.shape[-1]
+        angle = 1j * (np.asarray(line.step)[:, None] * x)[..., None]
+        coarse = np.exp(angle * (line.first + np.arange(0, n, STEP)))
+        powers = (coarse[..., None] * np.exp(angle * np.arange(STEP))[..., None, :]).reshape(*x.shape, -1)[..., :n]
+        sums = np.moveaxis(powers @ np.swapaxes(slopes, 1, 2), -1, 0)
+        rows = sums.shape[0] // 2
+        grow = np.exp(np.asarray(line.sigma)[:, None] * x)
+        return sums[:rows] * grow + np.conj(sums[rows:]) / grow
+
+    def value(self, x: np.ndarray) -> np.ndarray:
+        """p at positions (F, m)."""
+        return self.at(x, self.slopes(0))[0]
+
+
+def _both_modes(s: Scene, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Modes, Modes]:
+    """The plane waves at the plane, on a line and on another to judge it by; one response for both."""
+    lines = paths.open_line(plan), paths.open_line(plan.other())
+    k, weight = (np.concatenate([line[i] for line in lines], axis=-1) for i in (0, 1))
+    h = plane(k)
+    right, left = paths.amplitudes(Line(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    right, left, n = right * h, left * h, lines[0].k.shape[-1]
+    return Modes(lines[0], right[:, :n], left[:, :n]), Modes(lines[1], right[:, n:], left[:, n:])
+
+
+def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
+    lo, hi = beam.band(s.k0, rtol * 1e-2)
+    source = beam.reach(rtol * 1e-2)
+    extent = np.abs(middle - beam.centre) + half
+    branch = nearest_branch(s)
+    return paths.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
+
+
+class Route(NamedTuple):
+    """How a beam gets to the plane that is measured, at F frequencies."""
+
+    scene: Scene
+    plane: Callable[[Scene, np.ndarray], Plane]  #: of a scene and the lengths along z
+    transfer: Callable[[Scene], Transfer]  #: the same for the scene of one frequency
+    z: np.ndarray  #: (F,) where that transfer meets the plane
+    path: np.ndarray  #: (F,) length along z
+    guided: bool  #: whether there is a slab on the way
+
+
+def measure(route: Route, beam: Beam, rtol: float) -> Measures:
+    """Width, peak and centroid of the profiles across one plane per frequency."""
+    s = route.scene
+    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+    out, good = _together(route, beam, rtol, level)
+    for i in np.flatnonzero(~good):
+        one = at_frequency(s, int(i))
+        found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
+        for values, value in zip(out, found, strict=True):
+            values[i] = value
+    return out
+
+
+#: The most plane waves of all frequencies that are worked on at a time, and of one of them.
+MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
+#: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
+ROUND = 0.25
+
+
+def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
+    """Measures at all frequencies by the fast path, in halves where that takes many plane waves, and which are good."""
+    s, count = route.scene, route.scene.omega.shape[0]
+    out, good = Measures(*(np.full(count, np.nan) for _ in Measures._fields)), np.zeros(count, bool)
+    if not beam.entire:
+        return out, good
+    plane = route.plane(s, route.path)
+    middle, half = landing(s, beam, plane)
+    plan = _plan(s, beam, route.path, middle, half, rtol)
+    size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
+    if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
+        halves = [_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)]
+        found = Measures(*(np.concatenate(pair) for pair in zip(*(m for m, _ in halves), strict=True)))
+        return found, np.concatenate([some for _, some in halves])
+    if size < MOST_OF_ONE:
+        first, second = _both_modes(s, beam, plane, plan)
+        out, good = _measured(first, second, plan, middle - beam.centre, half, level, rtol)
+        out = out._replace(centroid=out.centroid + beam.centre)
+        if route.guided:
+            good &= ~_backward(s, plan)
+            near = plane(near_normal.around(np.asarray(plan.delta)[:, None] * ROUND))
+            good &= near_normal.is_calm(near, max(0.01 * rtol, 1e-12))[:, 0]
+    return out, good
+
+
+def _taken(route: Route, rows: np.ndarray) -> Route:
+    """Some frequencies of a route."""
+    return route._replace(scene=at_frequency(route.scene, rows), z=route.z[rows], path=route.path[rows])
+
+
+def _backward(s: Scene, plan: OpenPlan) -> np.ndarray:
+    """Where the lines leave a mode on their wrong side, (F,)."""
+    bad = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
+    for i in np.flatnonzero(bad) if is_lossless(s) else []:  # what was counted may be forward
+        one = at_frequency(s, int(i))
+        start = min(1e-3 * one.k0, 0.1 * nearest_branch(one))
+        found = misplaced.misplaced(one, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
+        bad[i] = bool(found.poles) or math.isfinite(found.crossing)
+    return bad
+
+
+def _sampled(modal: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
+    """p on an even grid over each whole window: x and p, (F, n)."""
+    line = modal.line
+    m = line.first + np.arange(line.k.shape[-1])
+    n = fft.fast_length(3 * int(np.max(np.abs(m))) + 1)
+    x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
+    bins = np.zeros((2, *line.k.shape[:-1], n), complex)
+    turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
+    bins[0][:, m % n] = modal.right * turn
+    bins[1][:, -m % n] = modal.left * np.conj(turn)
+    right, left = fft.transform(bins)
+    grow = np.exp(line.sigma[:, None] * x)
+    return x, right * grow + left / grow
+
+
+def _measured(
+    modal: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float, rtol: float
+) -> tuple[Measures, np.ndarray]:
+    """Measures from the samples and Newton's method, and where they can be trusted."""
+    x, p = _sampled(modal, plan)
+    valid = np.abs(x - middle[:, None]) <= half[:, None]
+    size = np.where(valid, np.abs(p), 0.0)
+    rows = np.arange(size.shape[0])
+    top = np.argmax(size, axis=-1)
+    ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
+    dx = plan.window / x.shape[-1]
+    slopes = modal.slopes(2)
+    position = _newton_peak(modal, slopes, x[rows, top], dx)
+    peak = np.abs(modal.at(position[:, None], slopes)[0, :, 0])
+    edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
+    good = (edge < EDGE * level * peak) & (peak > 0)
+    crossing, found = _crossings(x, np.abs(p), valid, top, position, peak, level)
+    good &= found
+    edges = _newton_level(modal, slopes, *crossing, level * peak)
+    check = np.concatenate([edges, position[:, None]], axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        error = 1.5 * np.max(np.abs(modal.at(check, slopes)[0] - second.value(check)), axis=-1) / peak
+        power = np.where(valid, np.abs(p) ** 2, 0.0)
+        place = (power * x).sum(-1) / power.sum(-1)
+    error = np.nan_to_num(error, nan=1.0)
+    good &= error <= rtol
+    met = np.count_nonzero(np.diff(size > level * peak[:, None], axis=-1), axis=-1)
+    return Measures(edges[:, 1] - edges[:, 0], peak, place, met, error), good
+
+
+def _crossings(
+    x: np.ndarray,
+    size: np.ndarray,
+    valid: np.ndarray,
+    top: np.ndarray,
+    position: np.ndarray,
+    peak: np.ndarray,
+    level: float,
+) -> tuple[tuple[np.ndarray, np.ndarray, np.ndarray], np.ndarray]:
+    """Points above and below the level on both sides of the peak, a guess between them, (F, 2); and whether they exist, (F,)."""
+    target = level * peak[:, None]
+    below = valid & (size < target)
+    index = np.arange(size.shape[-1])
+    left = np.max(np.where(below & (index < top[:, None]), index, -1), axis=-1)
+    right = np.min(np.where(below & (index > top[:, None]), index, index.size), axis=-1)
+    found = (left >= 0) & (right < index.size)
+    ends = np.stack([np.where(found, left, 0), np.where(found, right, index.size - 1)], axis=-1)
+    beside = np.clip(ends + np.array([1, -1]), 0, index.size - 1)
+    outer, inner = np.take_along_axis(x, ends, -1), np.take_along_axis(x, beside, -1)
+    beyond = (inner - position[:, None]) * np.array([1, -1]) > 0  # the peak lies between the two samples
+    inner = np.where(beyond, position[:, None], inner)
+    above = np.where(beyond, peak[:, None], np.take_along_axis(size, beside, -1)) ** 2
+    fall = above - np.take_along_axis(size, ends, -1) ** 2
+    share = np.clip((above - target**2) / np.where(fall > 0, fall, 1.0), 0.01, 0.99)
+    return (inner, outer, inner + share * (outer - inner)), found
+
+
+def _newton_peak(modal: Modes, slopes: np.ndarray, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
+    """Where |p|^2 is largest within a sample of start."""
+    x = start
+    for _ in range(5):
+        p, slope, bend = modal.at(x[:, None], slopes)[..., 0]
+        first = (p.conj() * slope).real
+        curve = np.abs(slope) ** 2 + (p.conj() * bend).real
+        step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
+        before, x = x, np.clip(x + step, start - dx, start + dx)
+        if np.all(np.abs(x - before) <= NEAR_PEAK * dx):
+            break
+    return x
+
+
+def _newton_level(
+    modal: Modes, slopes: np.ndarray, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
+) -> np.ndarray:
+    """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
+    x, size = guess, np.abs(outer - inner)
+    for _ in range(9):
+        p, slope, _ = modal.at(x, slopes)
+        excess = np.abs(p) ** 2 - target[:, None] ** 2
+        inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
+        steep = 2 * (p.conj() * slope).real
+        guess = x - excess / np.where(steep == 0, 1.0, steep)
+        low, high = np.minimum(inner, outer), np.maximum(inner, outer)
+        before, x = x, np.where((guess >= low) & (guess <= high), guess, (inner + outer) / 2)
+        if np.all(np.abs(x - before) <= NEAR_EDGE * size):
+            break
+    return x
+
+
+# --- one at a time ----------------------------------------------------------------------------------------
+
+
+def _measured_alone(
+    s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
+) -> tuple[float, float, float, int, float]:
+    """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level."""
+    planes = np.array([z])
+    batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
+    middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
+    for _ in range(9):
+        step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
+        x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
+        solution = choose.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
+        h = transfer(solution.line.k, planes)
+        if not solution.fft:
+            x = needed(s, beam, solution, h, x)
+        p = field_sums.beam_sum(s, beam, solution, h, x)[0]
+        size = np.abs(p)
+        if max(size[0], size[-1]) < EDGE * level * size.max():
+            break
+        half *= 2
+    evaluate = _between(s, beam, solution.line, h)
+    found = full_width(x, p, level, evaluate)
+    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(solution.error[0])
+
+
+#: Plane waves below this share of the strongest do not show in widths, nor did they choose the positions.
+FAINT = 1e-4
+
+
+def needed(s: Scene, beam: Beam, solution: choose.Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """As many of even positions as those plane waves need that get there: of a sharp edge's most die on the way."""
+    right, left = solution.amplitudes_of(s.k0, single(beam))
+    strength = np.abs(h[0]) * (np.abs(right[0]) + np.abs(left[0]))
+    largest = float(np.max(np.abs(solution.line.k.real), where=strength > FAINT * strength.max(), initial=0.0))
+    count = 2 * max(64, math.ceil((x[-1] - x[0]) * largest / np.pi)) + 1
+    memory.check_terms(solution.line.k.size, min(count, x.size))
+    return x if count >= x.size else np.linspace(x[0], x[-1], count)
+
+
+def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda at: field_sums.point_sum(s, beam, line, h, at)[0]
+
+
+# --- the row of a table of widths -------------------------------------------------------------------------
+
+
+class Row(NamedTuple):
+    """What `beam_width` reports, (F,) each, in its order."""
+
+    fwhm_launch: np.ndarray
+    fwhm_in: np.ndarray
+    fwhm_out: np.ndarray
+    fwhm_air: np.ndarray
+    peak_out: np.ndarray
+    centroid_out: np.ndarray
+
+
+def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
+    """Widths at all frequencies of a scene, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
+    wavelengths = 2 * np.pi / s.k0
+
+    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        if not np.any(distance) and beam.entire:
+            return _launch_widths(s, beam)
+        alone = s._replace(branches=(s.k0 + 0j,))
+        route = Route(alone, without, transfer_function.free, distance, distance, False)
+        found = measure(route, beam, rtol)
+        return found.width, found.crossings, found.error
+
+    launch = free(np.zeros(s.k0.shape))
+    near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
+    face = np.full(s.k0.shape, s.thickness)
+    through = Route(
+        s,
+        lambda some, _: far_face(some, beam.z0),
+        lambda one: transfer_function.through(one, beam.z0),
+        face,
+        face - beam.z0,
+        True,
+    )
+    far = measure(through, beam, rtol)
+    air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
+    widths, met, errors = zip(launch, near, (far.width, far.crossings, far.error), air, strict=True)
+    return Row(*widths, far.peak, far.centroid), np.stack(met), np.stack(errors)
+
+
+def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Widths of the launch profile itself, crossings and errors; |p| does not depend on the frequency."""
+    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+    k0 = float(s.k0[0])
+    x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
+    p = beam.profile(x, k0)
+    found = full_width(x, p, level, lambda at: beam.profile(at, k0))
+    met = crossings(p, level * found.peak)
+    return np.full(s.k0.shape, found.width), np.full(s.k0.shape, met), np.zeros(s.k0.shape)

@@ -1,0 +1,109 @@
+"""The outgoing state carried back through all segments of a slab, and where depths lie in them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..arrays.matmul import BLOCK
+from ..media.structures import LayerValues, SegmentValues
+from .cell import BlochPhase, Matrix, bloch_phase, cell_matrix, power_back
+from .layer import Entire, State, layer_back, normalised, several_layers
+
+
+class Station(NamedTuple):
+    """One segment during the march: its far-face state, its matrix (None for a single period) and where it begins.
+
+    `faces` are the states behind those layers of a single period in which depths lie.
+    """
+
+    values: SegmentValues
+    far: State
+    matrix: Matrix | None
+    bloch: BlochPhase | None
+    start: float
+    faces: dict[int, State]
+
+
+def march(
+    segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State, z: np.ndarray
+) -> tuple[State, list[Station]]:
+    """Carry the outgoing state back through all segments."""
+    starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
+    owner = segment_of(starts[:-1], z) if z.size else z
+    stations = []
+    for index in reversed(range(len(segments))):
+        segment, start = segments[index], float(starts[index])
+        far, m, b = state, None, None
+        faces: dict[int, State] = {}
+        if segment.periods == 1:
+            wanted = set(places_of(segment, z[owner == index] - start).layer.tolist()) if z.size else set()
+            state, faces = _through_layers(segment.layers, omega, kx, state, wanted)
+        else:
+            m = cell_matrix(segment.layers, omega, kx)
+            b = bloch_phase(m)
+            state = normalised(power_back(m, b, state, segment.periods))
+        stations.append(Station(segment, far, m, b, start, faces))
+    return state, stations[::-1]
+
+
+def segment_of(starts: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Which segment each depth lies in."""
+    return np.clip(np.searchsorted(starts, z, side="right") - 1, 0, None)
+
+
+def _through_layers(
+    layers: LayerValues, omega: np.ndarray, kx: np.ndarray, state: State, wanted: set[int]
+) -> tuple[State, dict[int, State]]:
+    """Carry a state back through layers one by one, their functions made in blocks; keep those behind `wanted` layers."""
+    # plain: for each layer from the last, state = layer_back(state, *one_layer(...)), normalised now and then
+    omega2, kx2 = omega * omega, kx * kx
+    count = len(layers.thickness)
+    faces: dict[int, State] = {}
+    size = min(16, max(1, BLOCK // max(1, kx2.size)))
+    for stop in range(count, 0, -size):
+        first = max(0, stop - size)
+        A, B, f = several_layers(layers, slice(first, stop), omega2, kx2)
+        As, Bs = A * f.s, B * f.s
+        for j in reversed(range(stop - first)):
+            if first + j in wanted:
+                faces[first + j] = state
+            if f.growth is None:
+                state = _calm_back(state, f.c[j], As[j], Bs[j])
+            else:
+                a = np.broadcast_to(f.a, f.c.shape)[j]
+                state = layer_back(state, A[j], B[j], Entire(a, f.c[j], f.s[j], f.growth[j]))
+        state = normalised(state)  # 16 layers that do not grow are far from overflow
+    return state, faces
+
+
+def _calm_back(state: State, c: np.ndarray, As: np.ndarray, Bs: np.ndarray) -> State:
+    """`layer_back` where nothing grows, with A s and B s at hand."""
+    # plain: p + (c p - A s q), q + (c q + B s p)
+    p, q = c * state.p, c * state.q
+    p -= As * state.q
+    q += Bs * state.p
+    p += state.p
+    q += state.q
+    return State(p, q, state.log)
+
+
+class Places(NamedTuple):
+    """Where depths of one segment lie: period, layer, and the share of that layer behind them; (Z,) each."""
+
+    period: np.ndarray
+    layer: np.ndarray
+    share: np.ndarray
+
+
+def places_of(values: SegmentValues, depth: np.ndarray) -> Places:
+    """Places of depths behind the segment's near face."""
+    layers, periods = values
+    faces = np.concatenate([[0.0], np.cumsum(layers.thickness)])
+    period = np.clip(np.floor(depth / faces[-1]).astype(int), 0, periods - 1)
+    offset = np.clip(depth - period * faces[-1], 0.0, faces[-1])
+    solid = np.flatnonzero(layers.thickness > 0)
+    layer = solid[np.clip(np.searchsorted(faces[solid], offset, side="right") - 1, 0, len(solid) - 1)]
+    share = np.clip((faces[layer + 1] - offset) / layers.thickness[layer], 0.0, 1.0)
+    return Places(period, layer, share)

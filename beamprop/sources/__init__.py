@@ -1,0 +1,1 @@
+"""What is launched: Gaussian beams, sampled profiles, slits; one source at many angles."""
