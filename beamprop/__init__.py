@@ -16,8 +16,15 @@ from ._version import __version__
 
 if TYPE_CHECKING:
     from . import fem, plot
-    from .api import AccuracyWarning, beam_measures, beam_width, bloch, field, fwhm, guided_modes, scattering
+    from .api.beam_measures import beam_measures
+    from .api.beam_width import beam_width
+    from .api.bloch import bloch
+    from .api.checks import AccuracyWarning
+    from .api.field import field
+    from .api.fwhm import fwhm
+    from .api.guided_modes import guided_modes
     from .api.save_field import save_field
+    from .api.scattering import scattering
     from .comparison.fields import compare
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
@@ -30,16 +37,14 @@ _HOMES = {
     "media.structures": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
     "sources.beams": ("GaussianBeam", "Profile", "Slits"),
-    "api": (
-        "AccuracyWarning",
-        "beam_measures",
-        "beam_width",
-        "bloch",
-        "field",
-        "fwhm",
-        "guided_modes",
-        "scattering",
-    ),
+    "api.beam_measures": ("beam_measures",),
+    "api.beam_width": ("beam_width",),
+    "api.bloch": ("bloch",),
+    "api.checks": ("AccuracyWarning",),
+    "api.field": ("field",),
+    "api.fwhm": ("fwhm",),
+    "api.guided_modes": ("guided_modes",),
+    "api.scattering": ("scattering",),
     "api.save_field": ("save_field",),
     "comparison.fields": ("compare",),
     "io.comsol": ("read_comsol", "to_grid"),

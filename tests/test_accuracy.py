@@ -10,9 +10,8 @@ import pytest
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import error_estimate, paths
-from beamprop.media import sampled
 from beamprop.profiles import sections
-from beamprop.response import transfer_function
+from beamprop.response import sampled_slab, transfer_function
 from beamprop.sources import angles
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
@@ -105,7 +104,7 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
     assert np.abs(truth.p[: x.size]).max() < 1e-6 * peak
     allowed = 3 * float(window.error_estimate) + float(truth.error_estimate)
     assert np.abs(window.p - truth.p[: x.size]).max() < min(1e-8, allowed) * peak
-    s = sampled.scene(slab, F)
+    s = sampled_slab.sample(slab, F)
     reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes = np.array([-20.0, slab.thickness])
     found = error_estimate.survey(
@@ -115,7 +114,7 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
 
 
 def test_a_beam_that_lands_in_the_window_is_not_looked_for():
-    s = sampled.scene(bp.Slab.uniform(bp.AIR, 0.1), F)
+    s = sampled_slab.sample(bp.Slab.uniform(bp.AIR, 0.1), F)
     reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes, x = np.array([0.0, 0.1]), np.linspace(-1, 1, 11)
     beam = bp.GaussianBeam(0.3, 30.0, z0=-1.0)
@@ -174,7 +173,7 @@ def test_beams_from_far_away_through_a_slab(medium):
 @pytest.mark.parametrize("loss", [(0.05, 0.0), (0.05 + 0.05j, 0.025)])
 def test_lower_accuracy_is_cheaper(loss, points):
     """Plane waves of the line that is chosen: fewer the larger rtol is."""
-    s = sampled.scene(bp.Slab(bp.lmmd_cell(*loss), 450), F)
+    s = sampled_slab.sample(bp.Slab(bp.lmmd_cell(*loss), 450), F)
     x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
     sizes = []
     for rtol in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):

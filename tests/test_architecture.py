@@ -20,39 +20,18 @@ ORDER = [
     "conventions",
     "memory",
     "validate",
+    "arrays",
     "media",
-    "homogenize",
-    "products",
-    "tables",
     "response",
-    "columns",
-    "beam",
-    "widths",
-    "fft",
-    "spectral",
-    "scene",
-    "roots",
+    "sources",
     "modes",
-    "misplaced",
-    "stretches",
-    "fan",
-    "transfers",
-    "origin",
-    "judge",
-    "planes",
-    "elsewhere",
-    "lines",
-    "propagate",
-    "sections",
-    "datasets",
+    "contour",
+    "fields",
+    "profiles",
+    "io",
     "fem",
-    "questions",
-    "comsol",
+    "api",
     "comparison",
-    "storage",
-    "blocks",
-    "sweep",
-    "_plot_comparison",
     "plot",
     "cli",
     "__main__",
@@ -63,21 +42,18 @@ ONLY = {
     "conventions": set(),
     "memory": set(),
     "validate": {"memory"},
-    "widths": set(),
-    "fft": {"memory"},
-    "spectral": {"products", "fft", "memory"},
-    "roots": set(),
+    "arrays": {"memory"},
     "media": {"conventions", "memory", "validate"},
-    "homogenize": {"conventions", "validate", "media"},
-    "response": {"conventions", "media", "products"},
-    "columns": set(),
-    "tables": {"products"},
-    "beam": {"tables", "columns", "conventions", "memory", "validate", "media"},
-    "fem": {"conventions", "memory", "validate", "media", "beam", "datasets"},
-    "comsol": {"conventions", "memory", "validate", "datasets"},
-    "storage": {"conventions", "validate", "datasets"},
-    "_plot_comparison": {"conventions", "validate"},
-    "plot": {"conventions", "validate", "_plot_comparison"},
+    "response": {"conventions", "media", "arrays"},
+    "sources": {"arrays", "conventions", "memory", "validate"},
+    "modes": {"response"},
+    "contour": {"arrays", "memory", "response", "sources", "modes"},
+    "fields": {"arrays", "media", "response", "sources", "contour"},
+    "profiles": {"arrays", "memory", "response", "sources", "modes", "contour", "fields"},
+    "io": {"conventions", "memory", "validate", "media", "sources"},
+    "fem": {"conventions", "memory", "validate", "media", "sources", "io"},
+    "comparison": {"conventions", "validate", "profiles", "io"},
+    "plot": {"conventions", "validate"},
 }
 
 
@@ -142,20 +118,18 @@ def test_data_flows_one_way(module):
 
 def test_the_checker_sees_imports():
     """It finds relative and function-level imports in files and folders (or the tests here would hold by themselves)."""
-    assert {"datasets", "propagate", "response", "beam", "media"} <= set().union(
-        *map(own_imports, files_of("questions"))
-    )
-    assert {"homogenize", "storage", "questions", "plot"} <= set().union(*map(own_imports, files_of("cli")))
-    assert "pyfftw" in set().union(*map(other_imports, files_of("fft")))
+    assert {"io", "fields", "response", "sources", "media"} <= set().union(*map(own_imports, files_of("api")))
+    assert {"media", "io", "api", "plot"} <= set().union(*map(own_imports, files_of("cli")))
+    assert "pyfftw" in set().union(*map(other_imports, files_of("arrays")))
     assert len(FILES) >= 18
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_one_user_of_fft_libraries(module):
-    """fft alone imports pyfftw or scipy.fft."""
+    """arrays/fft.py alone imports pyfftw or scipy.fft."""
     for path in files_of(module):
         fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
-        assert not fft or module == "fft"
+        assert not fft or path.name == "fft.py"
 
 
 def makes_datasets(path):
@@ -173,7 +147,7 @@ def makes_datasets(path):
 def test_one_maker_of_datasets(module):
     """datasets alone makes them, so that every one has units, long names and provenance."""
     for path in files_of(module):
-        assert not makes_datasets(path) or module == "datasets", path
+        assert not makes_datasets(path) or path.name == "datasets.py", path
 
 
 def test_one_branch_of_the_square_root():
@@ -201,7 +175,7 @@ def test_one_home_of_checks():
 
 @pytest.mark.parametrize(
     "module",
-    ["conventions", "media", "homogenize", "response", "beam", "widths", "fft", "spectral", "lines", "propagate"],
+    ["conventions", "arrays", "media", "response", "sources", "modes", "contour", "fields", "profiles"],
 )
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""
@@ -336,7 +310,7 @@ STORAGE = ["blocked", "parts", "whole", "settled", "guarded", "seal", "netcdf", 
 @pytest.mark.parametrize("name", STORAGE)
 def test_storage_is_in_layers(name):
     """Paths know nothing of formats, formats nothing of save and load."""
-    path = ROOT / "storage" / f"{name}.py"
+    path = ROOT / "io" / "storage" / f"{name}.py"
     inner = {
         alias
         for node in ast.walk(tree(path))
@@ -344,7 +318,7 @@ def test_storage_is_in_layers(name):
         for alias in ([node.module] if node.module else [a.name for a in node.names])
     }
     assert inner <= set(STORAGE[: STORAGE.index(name)])
-    assert {p.stem for p in (ROOT / "storage").glob("*.py")} == set(STORAGE)
+    assert {p.stem for p in (ROOT / "io" / "storage").glob("*.py")} == set(STORAGE)
 
 
 @pytest.mark.parametrize("folder", ["home", "Users", "root", "tmp", "work"])

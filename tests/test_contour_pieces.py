@@ -6,7 +6,7 @@ from sided import BULK, K0, RHO, F
 
 import beamprop as bp
 from beamprop.contour import error_estimate, paths
-from beamprop.media.sampled import is_lossless, scene, up_to_wall, with_loss
+from beamprop.response.sampled_slab import sample
 from beamprop.sources.angles import Fan, single
 
 
@@ -75,7 +75,7 @@ def test_a_contour_that_crosses_passes_poles_on_both_sides():
 def test_how_near_a_pole_lies_to_the_origin(distance):
     """A response with poles at +-distance exp(i pi/4): the search ends between a sixteenth of that and all of it."""
     beam, x, z = bp.GaussianBeam(0.5, 0, 0, -0.1), np.linspace(-1, 1, 31), np.array([0.1])
-    s = scene(bp.Slab.uniform(bp.AIR, 0.1), F)
+    s = sample(bp.Slab.uniform(bp.AIR, 0.1), F)
     reach = paths.Reach(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
 
     def survey(square):
@@ -89,10 +89,10 @@ def test_how_near_a_pole_lies_to_the_origin(distance):
 
 
 def test_loss_is_added_to_everything():
-    s = scene(bp.Slab([bp.Layer(bp.Fluid(-2 * RHO, BULK), 0.1)], 3, after=bp.Fluid(RHO, 4 * BULK)), F)
-    lossy = with_loss(s, 1e-3)
-    assert is_lossless(s)
-    assert with_loss(s, 0.0) is s
+    s = sample(bp.Slab([bp.Layer(bp.Fluid(-2 * RHO, BULK), 0.1)], 3, after=bp.Fluid(RHO, 4 * BULK)), F)
+    lossy = s.with_loss(1e-3)
+    assert s.lossless
+    assert s.with_loss(0.0) is s
     layers = lossy.segments[0].layers
     assert layers.mass / np.abs(s.segments[0].layers.mass) == pytest.approx(-1 + 1e-3j)
     assert layers.compliance / np.abs(s.segments[0].layers.compliance) == pytest.approx(1 + 1e-3j)
@@ -103,13 +103,13 @@ def test_loss_is_added_to_everything():
 
 def test_nothing_is_left_behind_the_first_wall():
     air, wall = bp.Layer(bp.AIR, 0.1), bp.Layer(bp.Fluid(0, BULK), 0.1)
-    s = scene(bp.Slab([air, wall, air], 5), F)
-    kept = up_to_wall(s).segments
+    s = sample(bp.Slab([air, wall, air], 5), F)
+    kept = s.up_to_wall().segments
     assert len(kept) == 1
     assert kept[0].periods == 1
     assert kept[0].layers.mass.shape[0] == 2
-    plain = scene(bp.Slab([air], 5), F)
-    assert up_to_wall(plain) is plain
+    plain = sample(bp.Slab([air], 5), F)
+    assert plain.up_to_wall() is plain
 
 
 def test_a_wide_tilted_beam_has_no_plane_waves_near_the_normal():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import beamprop as bp
-from beamprop.media.sampled import last_branch, scene
 from beamprop.modes import argument_principle, guided
+from beamprop.response.sampled_slab import sample
 
 STEEL = bp.Fluid.from_speed(7800.0, 5900.0)  # as fluids: density and speed of longitudinal waves
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
@@ -64,8 +64,8 @@ def test_the_lossless_modulated_slab_at_high_frequencies(frequency, highest):
     kx = ds.kx.values
     assert np.all(np.abs(kx[:, None] - kx)[~np.eye(kx.size, dtype=bool)] > 1e-6)
     assert np.all(ds.residual < 1e-10)
-    s = scene(slab, frequency)
-    edges = np.linspace(last_branch(s) * (1 + guided.BESIDE), highest * s.k0, 12)
+    s = sample(slab, frequency)
+    edges = np.linspace(s.last_branch * (1 + guided.BESIDE), highest * s.k0, 12)
     parts = [argument_principle.Box(a, b, -0.5 * s.k0, 0.5 * s.k0) for a, b in itertools.pairwise(edges)]
     f = guided.dispersion_of(s)
     assert sum(argument_principle.winding(f, part.outline(200), 1e-9 * highest * s.k0) for part in parts) == kx.size

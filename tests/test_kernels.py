@@ -11,11 +11,10 @@ from beamprop.arrays import fft, matmul
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import error_estimate, paths
 from beamprop.fields import evaluate, low_rank
-from beamprop.media import sampled
 from beamprop.media.structures import layer_values
 from beamprop.profiles import sections
 from beamprop.response import cell as cell_kernels
-from beamprop.response import interior, recursion
+from beamprop.response import interior, recursion, sampled_slab
 from beamprop.response import layer as one
 from beamprop.sources import angles as source_angles
 
@@ -225,7 +224,7 @@ def plain_back(layers, j, omega, kx, state, share):
 def test_the_field_inside_against_all_layers_in_turn(seed, at_once, monkeypatch):
     monkeypatch.setattr(interior, "AT_ONCE", at_once)
     rng = np.random.default_rng(seed)
-    s = sampled.scene(random_slab(rng), 2500.0)
+    s = sampled_slab.sample(random_slab(rng), 2500.0)
     kx = random_kx(rng, 40)
     z = np.sort(s.thickness * rng.random(150))
     found = response.solve(s.segments, s.before, s.after, s.omega, kx, z)

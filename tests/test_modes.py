@@ -5,9 +5,9 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop.media import sampled
 from beamprop.modes import argument_principle, misplaced
 from beamprop.modes import guided as guided_modes
+from beamprop.response import sampled_slab
 
 F = 2500.0
 K0 = 2 * np.pi * F / 343
@@ -95,7 +95,7 @@ def test_a_cluster_of_backward_modes_gets_one_circle():
     apart = [float(np.abs(field(loss) - limit).max() / np.abs(limit).max()) for loss in (1e-4, 1e-5, 1e-6)]
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)
     assert apart[1] / apart[2] == pytest.approx(10, rel=0.05)
-    s = sampled.scene(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
+    s = sampled_slab.sample(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
     found = misplaced.misplaced(s, 0.3 * K0, 10 * K0, 1e-3 * K0)
     assert len(found.poles) == len(set(found.poles))
     assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.poles)
@@ -160,7 +160,7 @@ def test_field_far_from_a_slab_with_backward_modes():
     )
     slab, beam = bp.Slab(cell, 12), bp.GaussianBeam(0.11, x0=0.18, z0=-4.0)
     a, k0 = 0.11 / (2 * np.sqrt(np.log(2))), 2 * np.pi * frequency / 343
-    found = misplaced.misplaced(sampled.scene(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
+    found = misplaced.misplaced(sampled_slab.sample(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
     assert any(abs(k) < 0.9 * k0 for k in found.poles)
     x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
     want = oracles.open_field(
@@ -188,7 +188,7 @@ def test_wrong_side_would_be_seen():
     from beamprop.response import transfer_function
     from beamprop.sources.angles import single
 
-    s = sampled(thin(-0.6, 0.01), F)
+    s = sampled_slab.sample(thin(-0.6, 0.01), F)
     assert len(misplaced.misplaced(s, 0.2 * K0, 5 * K0, 1e-3 * K0).poles) == 1
     beam = bp.GaussianBeam(0.02)
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
@@ -260,13 +260,13 @@ def test_outlines_go_around_once(nodes):
 @pytest.mark.parametrize("loss", [0.0, 1e-3, 1e-2])
 def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
     """As `misplaced` finds them one by one; of a lossless slab forward ones may be counted too."""
-    from beamprop.media.sampled import scenes
+    from beamprop.response.sampled_slab import sample_all
 
     f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
     depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
-    found = misplaced.some_misplaced(scenes(slab, f), depth, band)
+    found = misplaced.some_misplaced(sample_all(slab, f), depth, band)
     each = [
-        bool(misplaced.misplaced(sampled(slab, a), b, c, 1e-3 * K0).poles)
+        bool(misplaced.misplaced(sampled_slab.sample(slab, a), b, c, 1e-3 * K0).poles)
         for a, b, c in zip(f, depth, band, strict=True)
     ]
     assert np.all(found >= each)
@@ -377,12 +377,12 @@ def test_a_plain_beam_says_nothing():
 
 def test_crossings_alone_and_together():
     """Sampled on one window at once, and in a window that grows: the same number."""
-    from beamprop.media.sampled import at_frequency, scenes
     from beamprop.profiles import sections
     from beamprop.response import transfer_function
+    from beamprop.response.sampled_slab import sample_all
 
     slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
-    s = scenes(slab, np.array([2000.0, 8000.0, 12_000.0]))
+    s = sample_all(slab, np.array([2000.0, 8000.0, 12_000.0]))
     face = np.full(3, slab.thickness)
     route = sections.Route(
         s,
@@ -394,7 +394,7 @@ def test_crossings_alone_and_together():
     )
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
-        one = at_frequency(s, i)
+        one = s.take(i)
         alone = sections._measured_alone(
             one, beam, transfer_function.through(one, 0.0), slab.thickness, 1e-6, 0.5, True
         )

@@ -6,7 +6,7 @@ from oracles import _product
 
 import beamprop as bp
 from beamprop.contour import stretches
-from beamprop.media import sampled as scenes
+from beamprop.response import sampled_slab
 
 F = 4500.0
 LAMBDA = 2 * np.pi / float(bp.AIR.wavenumber(F).real)
@@ -132,7 +132,7 @@ def test_bands_say_where_the_contour_passes():
     fluids = [bp.Fluid(RHO, BULK), bp.Fluid(3 * RHO, 0.4 * BULK)]
     for sign in (1, -1):
         layers = [bp.Layer(bp.Fluid(sign * v.density, sign * v.bulk_modulus), 0.1 * LAMBDA) for v in fluids]
-        s = scenes.scene(bp.Slab(layers, 50), F)
+        s = sampled_slab.sample(bp.Slab(layers, 50), F)
         bands = stretches.bands_of(s, 4 * K0)
         assert [part.side for part in bands.parts] == [-sign]
         assert bands.gaps[-1][1] == pytest.approx(4 * K0)
@@ -141,7 +141,7 @@ def test_bands_say_where_the_contour_passes():
 def test_a_contour_meets_the_axis_at_the_branch_points_on_its_other_side():
     """Above the axis k0 is met, below it that of backward waves; nodes stay on the side of their stretch."""
     slab = bp.Slab([bp.Layer(bp.AIR, 0.1 * LAMBDA)], 1, after=bp.Fluid(-2 * RHO, -BULK))
-    s = scenes.scene(slab, F, backward=True)
+    s = sampled_slab.sample(slab, F, backward=True)
     back = K0 * np.sqrt(2)
     both = [stretches.met_at_branches(s, [stretches.Stretch(0.0, 3 * K0, side)]) for side in (-1, 1)]
     assert [p.lo for p in both[0]] == pytest.approx([0.0, back])

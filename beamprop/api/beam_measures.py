@@ -1,58 +1,25 @@
-"""Question about a beam as a whole: widths by three definitions, place, shift, power, divergence."""
+"""`beam_measures`: a beam as a whole, reflected and transmitted."""
 
 from __future__ import annotations
 
-import math
 import warnings
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.integrate import simpson
 
 from .. import memory, validate
-from ..contour import choose, paths
-from ..conventions import outgoing_kz
-from ..fields import evaluate
 from ..io import datasets
-from ..media.sampled import Scene, real_branches, scene
-from ..media.structures import FluidValues, Slab
-from ..profiles import fwhm as profile_width
-from ..profiles import sections
-from ..response import solve
-from ..sources.angles import single
+from ..media.structures import Slab
+from ..profiles import measures
+from ..response.sampled_slab import sample
 from ..sources.beams import Beam, moved_to_origin
 from . import checks
 from .checks import Progress
 
-#: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
-TAIL = 0.01
-#: So often the window is doubled to get there; guided waves of a lossless slab run along for ever.
-DOUBLINGS = 6
-#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
-FINER = 8
 SIDES = ("reflected", "transmitted")
 #: Variables that are positions on x.
 PLACES = ("centroid", "moments_from", "moments_to")
-
-
-class Beamlet(NamedTuple):
-    """Measures of one outgoing beam at a face; names of the dataset's variables."""
-
-    fwhm: float
-    width_1e2: float
-    width_second_moment: float
-    centroid: float
-    lateral_shift: float
-    peak: float
-    power: float
-    divergence: float
-    far_angle: float
-    crossings: int
-    moments_from: float
-    moments_to: float
-    rim: float
 
 
 def beam_measures(
@@ -117,19 +84,21 @@ def beam_measures(
     half = None if window is None else validate.as_number(window, "window", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     memory.check_table(flat.size * flat_angles.size, 280.0)
-    table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
+    table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in measures.Beamlet._fields}
     worst = 0.0
     source, origin = moved_to_origin(beam)
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
-        s = scene(slab, float(flat[i]))
-        for side, (beamlet, error) in enumerate(_both(s, source.at_angle(float(flat_angles[j])), rtol, half)):
+        s = sample(slab, float(flat[i]))
+        for side, (beamlet, error) in enumerate(
+            measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)
+        ):
             worst = max(worst, error)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in PLACES:
         table[name] += origin
-    checks.announce(worst, rtol)
-    _announce(table, window is not None)
+    checks.warn_if_inaccurate(worst, rtol)
+    _warn_of_windows(table, window is not None)
     dims, pick = checks.dims(frequency=f, angle=angles)
     coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
     variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
@@ -137,7 +106,7 @@ def beam_measures(
     return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=rtol, window=half)
 
 
-def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
+def _warn_of_windows(table: dict[str, np.ndarray], chosen: bool) -> None:
     missing = [name for name, values in table.items() if np.any(np.isnan(values))]
     if missing:
         warnings.warn(
@@ -146,7 +115,7 @@ def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
             stacklevel=3,
         )
     rim = float(np.max(np.nan_to_num(table["rim"], nan=0.0)))
-    if rim > TAIL and not chosen:
+    if rim > measures.TAIL and not chosen:
         warnings.warn(
             f"|p| falls to {rim:.2g} of its peak only, in the widest window tried: centroid, lateral_shift and second moment "
             "are those of moments_from to moments_to; choose a window",
@@ -160,152 +129,3 @@ def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
             RuntimeWarning,
             stacklevel=3,
         )
-
-
-def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float]]:
-    """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
-    slope = math.tan(math.radians(beam.angle))
-    ray = beam.centre - beam.z0 * slope
-    launched = _power(s, beam, lambda kx: np.ones(kx.shape), s.before, s.k0)[0]
-    out = []
-    for transfer, place, fluid in (
-        (_reflected(s, beam.z0), ray, s.before),
-        (_transmitted(s, beam.z0), ray + s.thickness * slope, s.after),
-    ):
-        out.append(_measure(s, beam, transfer, place, fluid, launched, rtol, window))
-    return out
-
-
-#: kx (n,) -> h (n,)
-Face = Callable[[np.ndarray], np.ndarray]
-
-
-def _launch(s: Scene, kx: np.ndarray, z0: float) -> np.ndarray:
-    return np.exp(-1j * outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before)) * z0)
-
-
-def _reflected(s: Scene, z0: float) -> Face:
-    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).r[0] * _launch(s, kx, z0)
-
-
-def _transmitted(s: Scene, z0: float) -> Face:
-    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).t[0] * _launch(s, kx, z0)
-
-
-def _measure(
-    s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float, window: float | None
-) -> tuple[Beamlet, float]:
-    if not _any_beam(s, beam, face):
-        return NO_BEAM, 0.0
-    plane = np.array([s.thickness])
-
-    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
-
-    for x in _windows(s, beam, ray, window):
-        solution = choose.choose_line(s, single(beam), transfer, x, plane, rtol)
-        h = face(solution.line.k)[None]
-        if window is None and not solution.fft:
-            x = sections.needed(s, beam, solution, h, x)
-        p = evaluate.beam_sum(s, beam, solution, h, x)[0]
-        size = np.abs(p)
-        if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
-            break
-    between = _between(s, beam, solution.line, h)
-    full = profile_width.full_width(x, p, 0.5, between)
-    e2 = profile_width.full_width(x, p, math.exp(-1), between)
-    centroid, spread, part = _moments(x, size, window is not None)
-    power, mean, deviation = _power(s, beam, face, fluid, _far_k(s, fluid))
-    crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
-    beamlet = Beamlet(
-        full.width,
-        e2.width,
-        4 * spread,
-        centroid,
-        centroid - ray,
-        full.peak,
-        power / launched if launched > 0 else math.nan,
-        2 * deviation,
-        mean,
-        crossings,
-        float(x[part][0]),
-        float(x[part][-1]),
-        float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
-    )
-    return beamlet, float(solution.error[0])
-
-
-#: What is said of a side without a beam.
-_NAN = math.nan
-NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
-
-
-def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
-    """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
-    k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
-    strength = np.abs(beam.spectrum(k, s.k0))
-    return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
-
-
-def _between(s: Scene, beam: Beam, line: paths.Line, h: np.ndarray) -> profile_width.Evaluate:
-    return lambda at: evaluate.point_sum(s, beam, line, h, at)[0]
-
-
-def _windows(s: Scene, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:
-    """Positions of the window that is asked for, or of wider and wider ones."""
-    if window is not None:
-        yield ray + window * np.linspace(-1, 1, FINER * (_samples(s, beam, window) - 1) + 1)
-        return
-    half = 1.5 * beam.reach(TAIL) + 4 * np.pi / s.k0 + abs(ray - beam.centre)
-    for _ in range(DOUBLINGS + 1):
-        yield beam.centre + half * np.linspace(-1, 1, _samples(s, beam, half))
-        half *= 2
-
-
-def _samples(s: Scene, beam: Beam, half: float) -> int:
-    finest = max(abs(k) for k in beam.band(s.k0, 1e-3))
-    return 2 * int(min(max(64, math.ceil(2 * half * finest / np.pi)), 40_000)) + 1
-
-
-def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float, slice]:
-    """Centroid and standard deviation of |p|^2, and where they are taken.
-
-    That is where |p| is connected to the peak above the tail, or the `whole` window if asked for or if the tail is cut off.
-    """
-    top = int(np.argmax(size))
-    below = np.flatnonzero(size < TAIL * size[top])
-    left, right = below[below < top], below[below > top]
-    part = slice(None) if whole or left.size == 0 or right.size == 0 else slice(left[-1], right[0] + 1)
-    x, weight = x[part], size[part] ** 2
-    integral = simpson if whole else np.trapezoid  # samples of a beam that ends inside are best summed alike
-    total = integral(weight, x=x)
-    if not total > 0:
-        return math.nan, math.nan, part
-    centre = integral(weight * x, x=x) / total
-    return float(centre), float(np.sqrt(integral(weight * (x - centre) ** 2, x=x) / total)), part
-
-
-def _far_k(s: Scene, fluid: FluidValues) -> float:
-    """Wavenumber of the propagating waves of a half-space, 0 if it has none."""
-    k = complex(s.omega[0, 0] * np.sqrt(fluid.rho_x[0] / fluid.bulk_modulus[0]))
-    return abs(k.real) if np.isfinite(k) else 0.0
-
-
-def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tuple[float, float, float]:
-    """Radiated power of S h [W/m, but for a constant], and mean and deviation of its direction [degree]."""
-    if k == 0:
-        return 0.0, math.nan, math.nan
-    extent = beam.reach(1e-6) + s.thickness - beam.z0
-    count = 200 + 2 * k * extent
-    memory.check_contour(count)
-    line = paths.propagating_line(k, real_branches(s), int(count))
-    kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
-    flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
-    right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))
-    total = float((right + left).sum())
-    if not total > 0:
-        return 0.0, math.nan, math.nan
-    angle = np.degrees(np.arcsin(np.clip(line.k.real / k, -1, 1)))
-    mean = float(((right - left) * angle).sum()) / total
-    square = float((right * (angle - mean) ** 2 + left * (angle + mean) ** 2).sum()) / total
-    return total, mean, math.sqrt(square)

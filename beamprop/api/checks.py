@@ -20,7 +20,7 @@ class AccuracyWarning(UserWarning):
     """An answer whose estimated error is above the asked rtol."""
 
 
-def announce(error: float, rtol: float, stacklevel: int = 3) -> None:
+def warn_if_inaccurate(error: float, rtol: float, stacklevel: int = 3) -> None:
     """Nothing above rtol leaves a public call without a word."""
     if error > rtol:
         warnings.warn(
@@ -85,3 +85,20 @@ def dims(**axes: np.ndarray) -> tuple[tuple[str, ...], tuple[Any, ...]]:
 def coords(**axes: np.ndarray) -> dict[str, tuple[tuple[str, ...], Any]]:
     """Coordinates of the axes, scalars as scalars."""
     return {n: ((n,) if a.ndim else (), a) for n, a in axes.items()}
+
+
+#: Relative errors of plane waves from which on a warning is due.
+WORTH_A_WARNING = 1e-6
+
+
+def warn_of_plane_waves(error: np.ndarray, frequency: np.ndarray, name: str, axis: np.ndarray) -> None:
+    """A warning with the largest of errors (F, n) and where it is, if it is large."""
+    i, j = np.unravel_index(np.argmax(error), error.shape)
+    if error[i, j] > WORTH_A_WARNING:
+        warnings.warn(
+            f"estimated error {error[i, j]:.1e} (relative) at {frequency[i]:.8g} Hz, {name} {axis[j]:.8g}, and above "
+            f"{WORTH_A_WARNING:.0e} at {np.count_nonzero(error > WORTH_A_WARNING)} of {error.size} places: "
+            "the last bits of the input decide there",
+            AccuracyWarning,
+            stacklevel=3,
+        )

@@ -11,11 +11,14 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
+from ..fields.question import fill, prepare
 from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
 from ..sources.beams import Beam
-from . import FieldMap, Progress
+from . import checks
+from .checks import Progress
+from .field_question import checked_question, labelled, largest
 
 #: The largest chunk of a file [bytes].
 CHUNK = 2**24
@@ -72,36 +75,36 @@ def save_field(
     path = validate.as_path(path)
     validate.function(progress, "progress")
     check_target(path)
-    asked = FieldMap(slab, beam, frequency, x, z, angle, boundary, period, rtol)
-    check_field(asked.shape, in_file=True)
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    shape, dims, pick = question.shape, labels.dims, labels.pick
+    check_field(shape, in_file=True)
     memory = validate.as_number(memory, "memory", positive=True)
-    block, chunk = _block(asked.shape, memory)
+    block, chunk = _block(shape, memory)
     work = [
         (i, slice(j, j + block[0]), slice(k, k + block[1]))
-        for i, j, k in itertools.product(
-            range(asked.shape[0]), range(0, asked.shape[1], block[0]), range(0, asked.shape[2], block[1])
-        )
+        for i, j, k in itertools.product(range(shape[0]), range(0, shape[1], block[0]), range(0, shape[2], block[1]))
     ]
-    kept = [isinstance(p, slice) for p in asked.pick]
+    errors = np.full(shape[:2], np.nan)
+    kept = [isinstance(p, slice) for p in pick]
 
     def blocks() -> Iterator[tuple[tuple[Any, ...], np.ndarray]]:
         chosen = -1
         for i, angles, planes in progress(work):
             if i != chosen:
-                asked.choose(i)
-                chosen = i
+                prepared, chosen = prepare(question, i), i
             # a block at the end may be smaller
-            sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), asked.shape[1:3], strict=True)]
-            p = np.empty((1, *sizes, asked.shape[3]), complex)
-            asked.fill(planes, angles, p[0])
+            sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), shape[1:3], strict=True)]
+            p = np.empty((1, *sizes, shape[3]), complex)
+            found = fill(prepared, planes, angles, p[0])
+            errors[i, angles] = np.fmax(errors[i, angles], found)
             where = (slice(i, i + 1), angles, planes, slice(None))
-            yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), p[asked.pick]
+            yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), p[pick]
 
-    sizes = dict(zip(asked.dims, (n for n, keep in zip(asked.shape, kept, strict=True) if keep), strict=True))
-    chunks = tuple(c for c, keep in zip((1, *chunk, asked.shape[3]), kept, strict=True) if keep)
-    save_blocks(path, "p", sizes, chunks, blocks(), lambda: asked.dataset(None))
-    asked.announce()
-    return asked.dataset(None)
+    sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
+    chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
+    save_blocks(path, "p", sizes, chunks, blocks(), lambda: labelled(labels, errors, None))
+    checks.warn_if_inaccurate(largest(errors), question.rtol)
+    return labelled(labels, errors, None)
 
 
 def _block(shape: tuple[int, ...], memory: float) -> tuple[tuple[int, int], tuple[int, int]]:

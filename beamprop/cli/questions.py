@@ -24,7 +24,7 @@ def width(**o: Any) -> None:
     """Beam widths against frequency or angle (the paper's Fig. 6)."""
 
     def ask() -> xr.Dataset:
-        from ..api import beam_width
+        from ..api.beam_width import beam_width
 
         return beam_width(
             slab_of(o),
@@ -73,7 +73,7 @@ def field(**o: Any) -> None:
     """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
 
     def ask() -> xr.Dataset:
-        from ..api import field
+        from ..api.field import field
 
         slab = slab_of(o)
         z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
@@ -140,7 +140,7 @@ def spectrum(**o: Any) -> None:
     }
 
     def ask() -> xr.Dataset:
-        from ..api import scattering
+        from ..api.scattering import scattering
 
         return scattering(slab_of(o), o["frequency"], **axes)
 
@@ -164,7 +164,7 @@ def bloch(**o: Any) -> None:
     """Bloch wavenumber of the infinite medium against kx: equifrequency contours (the paper's Fig. 4)."""
 
     def ask() -> xr.Dataset:
-        from ..api import bloch
+        from ..api.bloch import bloch
 
         cell, background = cell_of(o)
         return bloch(cell, o["frequency"], kx_over_k0=o["kx_over_k0"], background=background)
@@ -194,7 +194,7 @@ def modes(**o: Any) -> None:
     """The modes that the slab guides, with the direction of their energy."""
 
     def ask() -> xr.Dataset:
-        from ..api import guided_modes
+        from ..api.guided_modes import guided_modes
 
         return guided_modes(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
 

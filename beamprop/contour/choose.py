@@ -1,6 +1,6 @@
 """The choice of a line of integration for a field and an rtol, and the judgement that it serves.
 
-Everything here is for one frequency; a `Scene` holds what does not change from line to line.
+Everything here is for one frequency; a `SampledSlab` holds what does not change from line to line.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import memory
-from ..media.sampled import Scene, backward_branch, is_lossless, last_branch, nearest_branch, real_branches
 from ..modes import misplaced
+from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer
 from ..sources.angles import Fan
-from . import error_estimate, paths, peak_outside, stretches
+from . import error_estimate, paths, peak_outside, residues, stretches
 from .error_estimate import Checks
 from .paths import BentPlan, Line, Reach
 
@@ -35,24 +35,24 @@ def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
 
 
-def _reach(s: Scene, fan: Fan, x: np.ndarray, z: np.ndarray, rtol: float) -> Reach:
+def _reach(s: SampledSlab, fan: Fan, x: np.ndarray, z: np.ndarray, rtol: float) -> Reach:
     tolerance = rtol * 1e-3
     beam = fan.beam
     source = beam.reach(tolerance)
     extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = min(fan.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
-    return Reach(s.k0, nearest_branch(s), band, max(extent, source), source, path)
+    return Reach(s.k0, s.nearest_branch, band, max(extent, source), source, path)
 
 
-def _arriving(s: Scene, z0: float, z: np.ndarray, tolerance: float) -> float:
+def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:
     """|kx| beyond which waves have decayed to `tolerance` on their way, in the half-spaces, to the nearest plane.
 
     What a slab does to them is not known here: it shows in the band's edge.
     """
     nearest = float(z.min())
     way = min(nearest, 0.0) - z0 + max(0.0, nearest - s.thickness)
-    return math.hypot(last_branch(s), math.log(1 / tolerance) / way) if way > 0 else math.inf
+    return math.hypot(s.last_branch, math.log(1 / tolerance) / way) if way > 0 else math.inf
 
 
 class Solution(NamedTuple):
@@ -73,7 +73,7 @@ class Solution(NamedTuple):
 
 
 def choose_line(
-    s: Scene,
+    s: SampledSlab,
     fan: Fan,
     transfer: Transfer,
     x: np.ndarray,
@@ -97,12 +97,12 @@ def choose_line(
 
 
 def _chosen(
-    s: Scene, checks: Checks, reach: Reach, seen: error_estimate.Survey, x: np.ndarray, rtol: float
+    s: SampledSlab, checks: Checks, reach: Reach, seen: error_estimate.Survey, x: np.ndarray, rtol: float
 ) -> Solution:
     if not checks.fan.beam.entire:
         return _propagating_solution(s, checks, reach, rtol, seen)
     search = _Search(s, checks, reach, rtol, seen)
-    if backward_branch(s) is not None and checks.guided:
+    if s.backward_branch is not None and checks.guided:
         return _solution_in_stretches(search)
     straight = None if search.too_wide() else _straight_solution(search, x)
     if straight:
@@ -118,7 +118,7 @@ MANY_MODES = 20_000
 class _Search:
     """The search for a contour: what is known of the poles on its wrong side, and the plan that has come so far."""
 
-    def __init__(self, s: Scene, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey) -> None:
+    def __init__(self, s: SampledSlab, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey) -> None:
         self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
         self.noise, self.sharp = seen.noise, seen.sharp
         self.plan: BentPlan = self._planned(math.inf)
@@ -180,7 +180,7 @@ class _Search:
         """The path of the present plan and a second one to judge it by, circles around what they leave on the wrong side."""
         reach = self.reach
         one, two = (
-            misplaced.with_residues(
+            residues.add_residues(
                 self.scene, paths.bent_line(p), self.found, max(reach.extent, reach.source), reach.path, bool(i)
             )
             for i, p in enumerate((self.plan, self.plan.other()))
@@ -201,7 +201,7 @@ def _bent_solution(search: _Search) -> Solution:
     """
     s, checks, rtol = search.scene, search.checks, search.rtol
     best: Solution | None = None
-    shrinks = 2 if is_lossless(s) else 6  # on the axis itself their number does not fall
+    shrinks = 2 if s.lossless else 6  # on the axis itself their number does not fall
     in_vain, asked = 0, None
     for _ in range(ATTEMPTS):
         if search.too_wide():
@@ -240,7 +240,7 @@ def _bent_solution(search: _Search) -> Solution:
             more = math.log(min(float(error.max()), 1e6) / (0.3 * rtol)) / plan.depth
             search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
     if best is None and search.found is misplaced.UNCLEAR:
-        if stretches.is_periodic(s):
+        if s.periodic:
             return _solution_in_stretches(search)
         raise ValueError(search.refusal())
     if best is None:
@@ -366,7 +366,7 @@ def fft_is_cheaper(n: int, modes: float, points: int) -> bool:
 DEEPEST_DIP = 0.3
 
 
-def _dip(s: Scene, reach: Reach, rtol: float, sharp: float) -> float:
+def _dip(s: SampledSlab, reach: Reach, rtol: float, sharp: float) -> float:
     """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
     growth = min(paths.DEEPEST, max(0.0, math.log(rtol / (100 * paths.EPS))))
     dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
@@ -376,14 +376,16 @@ def _dip(s: Scene, reach: Reach, rtol: float, sharp: float) -> float:
     return dip if not found.poles else 0.0
 
 
-def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey) -> Solution:
+def _propagating_solution(
+    s: SampledSlab, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey
+) -> Solution:
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes, on contours that dip differently, agree."""
     count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
     dip = _dip(s, reach, rtol, seen.sharp) if checks.guided else 0.0
     for _ in range(6):
         memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
         lines = [
-            paths.propagating_line(s.k0, real_branches(s), int(more * count), share * dip, share * seen.sharp)
+            paths.propagating_line(s.k0, s.real_branches, int(more * count), share * dip, share * seen.sharp)
             for more, share in ((1.0, 0.7), (1.4, 1.0))
         ]
         one, two = (error_estimate.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
@@ -397,7 +399,7 @@ def _propagating_solution(s: Scene, checks: Checks, reach: Reach, rtol: float, s
     return Solution(lines[1], error)
 
 
-def periodic_solution(s: Scene, fan: Fan, x: np.ndarray, period: float) -> Solution:
+def periodic_solution(s: SampledSlab, fan: Fan, x: np.ndarray, period: float) -> Solution:
     """The plain sum over the real orders of a stated period."""
     band = min(fan.band(s.k0, 1e-15), 2 * np.pi * MOST_MODES / period)
     line = paths.periodic_line(period, band)

@@ -9,12 +9,12 @@ asked: a beam is looked for where it lands, too.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..media.sampled import Scene, real_branches
 from ..memory import check_contour
+from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer, shifts
 from ..sources.angles import Fan
 from ..sources.beams import Beam
@@ -158,7 +158,9 @@ class Survey(NamedTuple):
     sharp: float  #: distance from kx = 0 of the nearest singularity, inf where none is near
 
 
-def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float) -> Survey:
+def survey(
+    s: SampledSlab, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float
+) -> Survey:
     """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
     whether the response is sharp at kx = 0.
 
@@ -227,7 +229,9 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
 MOST_RAYS = 40_000
 
 
-def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
+def _brightness(
+    s: SampledSlab, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray
+) -> np.ndarray:
     """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
     x = x - fan.beam.centre
     path = float(z.max()) - fan.beam.z0 + s.thickness
@@ -237,7 +241,7 @@ def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: n
         return np.zeros(found.shape[1:])
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
-        line = paths.propagating_line(s.k0, real_branches(s), int(more * count))
+        line = paths.propagating_line(s.k0, s.real_branches, int(more * count))
         right, left = amplitudes(s.k0, beams, line)
         with np.errstate(invalid="ignore", over="ignore"):
             p = paths.direct_sum(line, transfer(line.k, z), right, left, x)
@@ -252,7 +256,7 @@ def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.nd
     return np.minimum(values[above], values[below])
 
 
-def arriving_band(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> float:
+def arriving_band(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float) -> float:
     """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
     k = np.geomspace(0.01 * reach.k0, reach.band, 400)
     h = np.abs(checks.transfer(k.astype(complex), checks.z))
@@ -331,13 +335,11 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
     The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
     (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
     """
-    if not hasattr(fan.beam, "spectral_rounding"):
-        return np.zeros(one.h.shape[0])
-    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), []
-    ends = {float(fan.angles.min()), float(fan.angles.max())}
-    for beam in (fan.at(angle) for angle in ends):
-        for k in (one.line.k, -one.line.k):
-            coherent, white = beam.spectral_rounding(k, k0)
+    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), [np.zeros(one.h.shape[0])]
+    for angle in {float(fan.angles.min()), float(fan.angles.max())}:
+        rounding: Any = getattr(fan.at(angle), "spectral_rounding", None)
+        for k in (one.line.k, -one.line.k) if rounding else ():
+            coherent, white = rounding(k, k0)
             with np.errstate(over="ignore", invalid="ignore"):
                 bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
     return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # the largest of many positions

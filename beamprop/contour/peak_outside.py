@@ -12,12 +12,13 @@ import math
 
 import numpy as np
 
-from ..media.sampled import Scene
-from ..modes.misplaced import MisplacedPoles, with_residues
+from ..modes.misplaced import MisplacedPoles
+from ..response.sampled_slab import SampledSlab
 from ..sources.angles import Fan
 from . import paths
 from .error_estimate import Checks, amplitudes, interpolated
 from .paths import BentPlan, Reach
+from .residues import add_residues
 
 #: How much wider than what is asked for, and than the way along z, the window is.
 WIDER, ALONG = 6.0, 4.0
@@ -25,7 +26,7 @@ WIDER, ALONG = 6.0, 4.0
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 
-def with_wider_look(s: Scene, checks: Checks, reach: Reach, plan: BentPlan, found: MisplacedPoles) -> Checks:
+def with_wider_look(s: SampledSlab, checks: Checks, reach: Reach, plan: BentPlan, found: MisplacedPoles) -> Checks:
     """Checks that know of the peaks far outside; the same ones where the window would take too many plane waves."""
     extent = WIDER * max(reach.extent, reach.source) + ALONG * max(reach.path, 0.0)
     wide = paths.plan_bent(reach._replace(extent=extent, band=plan.band), ROUGH, sharp=plan.sharp)
@@ -41,7 +42,7 @@ def with_wider_look(s: Scene, checks: Checks, reach: Reach, plan: BentPlan, foun
     x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
     peaks = []
     for i, p in enumerate((one, two)):
-        line = with_residues(s, paths.bent_line(p), found, extent, reach.path, bool(i))
+        line = add_residues(s, paths.bent_line(p), found, extent, reach.path, bool(i))
         right, left = amplitudes(checks.k0, beams, line)
         with np.errstate(over="ignore", invalid="ignore"):
             summed = paths.direct_sum(line, checks.transfer(line.k, checks.z), right, left, x)

@@ -20,12 +20,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media.sampled import Scene, on_the_right
 from ..modes import misplaced
 from ..modes.argument_principle import Box, TooManyModes
 from ..modes.guided import BESIDE, Mode
 from ..modes.misplaced import MisplacedPoles
-from ..response import cell_matrix
+from ..response.sampled_slab import SampledSlab, on_the_right
+from . import residues
 from .paths import SLOPE, Line, Reach
 
 
@@ -74,26 +74,6 @@ STEP = 1e-7
 UNSEEN = 1e-12
 
 
-def is_periodic(s: Scene) -> bool:
-    """Whether a slab is one cell many times over, without layers of density 0."""
-    return len(s.segments) == 1 and s.segments[0].periods > 1 and not np.any(s.segments[0].layers.vanishing)
-
-
-def _half_trace(s: Scene, k: np.ndarray, loss: float = 0.0) -> np.ndarray:
-    """Half the trace of one period's matrix without its own loss, (n,); loss as in `scene.with_loss`."""
-    layers = s.segments[0].layers
-    mass, compliance, mobility = (v.real for v in (layers.mass, layers.compliance, layers.mobility))
-    layers = layers._replace(
-        mass=mass + 1j * loss * np.abs(mass),
-        compliance=compliance + 1j * loss * np.abs(compliance),
-        mobility=mobility - 1j * loss * np.abs(mobility),
-    )
-    m = cell_matrix(layers, s.omega, k[None] + 0j)
-    trace = m.a + (m.e11 + m.e22) / 2
-    with np.errstate(over="ignore"):
-        return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))[0]
-
-
 class Bands(NamedTuple):
     """A periodic slab's axis from 0 to the band's end, by the side to which a trace of loss moves the modes there."""
 
@@ -101,16 +81,16 @@ class Bands(NamedTuple):
     gaps: list[tuple[float, float]]  #: where the cell has no modes, but a face of the slab may
 
 
-def bands_of(s: Scene, end: float) -> Bands:
+def bands_of(s: SampledSlab, end: float) -> Bands:
     """The bands of a periodic slab: derivatives are imaginary parts of half the trace at complex kx and densities.
 
     The side changes half-way through a gap.
     """
     k = np.linspace(0, end, SAMPLES + 1)[1:]
     k = np.unique(np.concatenate([k, np.geomspace(1e-3, 1, DECADES) * min(s.k0, end)]))
-    by_k = _half_trace(s, k * (1 + 1j * STEP)).imag / STEP
-    by_loss = _half_trace(s, k, STEP).imag / STEP
-    inside = np.abs(_half_trace(s, k).real) < 1
+    by_k = s.half_trace(k * (1 + 1j * STEP))[0].imag / STEP
+    by_loss = s.half_trace(k, STEP)[0].imag / STEP
+    inside = np.abs(s.half_trace(k)[0].real) < 1
     clear = inside & (np.minimum(np.abs(by_k), np.abs(by_loss)) > UNSEEN)
     at = np.flatnonzero(clear)
     if not at.size:
@@ -125,13 +105,13 @@ def bands_of(s: Scene, end: float) -> Bands:
     return Bands([Stretch(float(lo), float(hi), int(v)) for (lo, hi), v in sides], gaps)
 
 
-def misplaced_in_gaps(s: Scene, bands: Bands, away: float) -> list[MisplacedPoles]:
+def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[MisplacedPoles]:
     """Modes of the slab's faces in the gaps, no farther than `away` from the axis, on the wrong side of the contour.
 
     Those that belong below a contour that passes below, and those that belong above one that passes above.
     """
     found: dict[int, list[Mode]] = {-1: [], 1: []}
-    at = sorted(float(abs(b.real)) for b in s.branches)
+    at = sorted(float(abs(b.real)) for b in s.branch_points)
     cuts = [b * (1 + side * BESIDE) for b in at for side in (-1, 1)]
     for lo, hi in bands.gaps:
         ends = sorted({lo, hi, *(v for v in (*cuts, *(part.lo for part in bands.parts)) if lo < v < hi)})
@@ -144,9 +124,9 @@ def misplaced_in_gaps(s: Scene, bands: Bands, away: float) -> list[MisplacedPole
     return [misplaced.with_circles(s, found[-1]), above]
 
 
-def met_at_branches(s: Scene, parts: list[Stretch]) -> list[Stretch]:
+def met_at_branches(s: SampledSlab, parts: list[Stretch]) -> list[Stretch]:
     """Stretches cut at the branch points that lie on the other side of the axis than where they belong, or on it."""
-    for b in s.branches:
+    for b in s.branch_points:
         point, side = complex(on_the_right(b)), 1 if b.real < 0 else -1  # the side on which it may be passed
         if point.real > abs(point.imag):
             parts = [piece for part in parts for piece in _cut(part, point.real, side)]
@@ -166,12 +146,12 @@ RATIO, SHORTEST = 1.7, 1e-10
 FLAT, TURN = 1.2, 9.0
 
 
-def stretched_line(s: Scene, parts: list[Stretch], plan: Plan, across: float, along: float) -> Line:
+def stretched_line(s: SampledSlab, parts: list[Stretch], plan: Plan, across: float, along: float) -> Line:
     """Gauss panels along a contour.
 
     Parameters
     ----------
-    s : Scene
+    s : SampledSlab
     parts : list of Stretch
         From 0, each beginning where the one before it ends; the last goes on to the band's end, off the axis.
     plan : Plan
@@ -199,7 +179,7 @@ def _corners(part: Stretch, plan: Plan, last: bool) -> list[complex]:
     return [*corners, hi + lift] if last else [*corners, hi - turn + lift, hi + 0j]
 
 
-def _edges(s: Scene, corners: list[complex], lengths: tuple[float, float], finer: float) -> np.ndarray:
+def _edges(s: SampledSlab, corners: list[complex], lengths: tuple[float, float], finer: float) -> np.ndarray:
     """Ends of the panels along the straight pieces of a stretch, (panels, 2)."""
     across, along = lengths
     out = [_graded(corners[0], corners[1], s.k0), _even(corners[1], corners[2], FLAT)]
@@ -207,7 +187,7 @@ def _edges(s: Scene, corners: list[complex], lengths: tuple[float, float], finer
         out.append(_graded(corners[3], corners[2], s.k0)[::-1, ::-1])
     edges = np.concatenate(out)
     length, middle = np.abs(edges[:, 1] - edges[:, 0]), edges.mean(axis=1)
-    steep = np.max([np.abs(middle / np.sqrt(b * b - middle * middle)) for b in s.branches], axis=0)  # |dkz/dkx|
+    steep = np.max([np.abs(middle / np.sqrt(b * b - middle * middle)) for b in s.branch_points], axis=0)  # |dkz/dkx|
     pieces = np.ceil(finer * np.maximum(1.0, length * (across + along * steep) / TURN)).astype(int)
     shares = [np.linspace(a, b, n + 1) for (a, b), n in zip(edges, pieces, strict=True)]
     return np.concatenate([np.stack([v[:-1], v[1:]], axis=1) for v in shares])
@@ -228,12 +208,12 @@ def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def pair_of_lines(s: Scene, reach: Reach, plan: Plan, start: float, crowded: bool) -> tuple[Line, Line] | None:
+def pair_of_lines(s: SampledSlab, reach: Reach, plan: Plan, start: float, crowded: bool) -> tuple[Line, Line] | None:
     """A contour in stretches and another to judge it by, circles around what they leave on the wrong side.
 
     Parameters
     ----------
-    s : Scene
+    s : SampledSlab
     reach : Reach
     plan : Plan
     start : float
@@ -263,7 +243,7 @@ def pair_of_lines(s: Scene, reach: Reach, plan: Plan, start: float, crowded: boo
     lines = []
     for second, p in ((False, plan), (True, plan.other())):
         line = stretched_line(s, parts, p, across, reach.path - s.thickness)
-        both = [misplaced.with_residues(s, line, poles, across, reach.path, second) for poles in found]
+        both = [residues.add_residues(s, line, poles, across, reach.path, second) for poles in found]
         around = sum(circled.circles for circled in both)
         k = np.concatenate([*(circled.k[: circled.circles] for circled in both), line.k])
         weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), line.weight])

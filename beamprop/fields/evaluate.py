@@ -1,6 +1,6 @@
 """Spectrum x response -> p(z, x): the sums over a line that was chosen.
 
-Everything here is for one frequency; a `Scene` holds what does not change from line to line.
+Everything here is for one frequency; a `SampledSlab` holds what does not change from line to line.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from ..arrays import exponentials
 from ..contour import error_estimate, paths
 from ..contour.choose import Solution, fft_is_cheaper
 from ..contour.paths import Line
-from ..media.sampled import Scene
+from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer
 from ..sources.angles import Fan, single
 from ..sources.beams import Beam
 from .low_rank import cross, mixing
 
 
-def point_sum(s: Scene, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+def point_sum(s: SampledSlab, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p(z, x) at any x by a matrix product."""
     right, left = error_estimate.amplitudes(s.k0, single(beam), line)
     return paths.direct_sum(line, h, right[0], left[0], x - beam.centre)
 
 
-def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+def beam_sum(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p(z, x) of one beam by whichever of FFT and matrix product is cheaper."""
     out = np.empty((1, h.shape[0], x.size), complex)
     fill(s, single(beam), solution, h, x, out)
@@ -38,7 +38,7 @@ def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndar
 FEW_PLANES = 4
 
 
-def fill(s: Scene, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+def fill(s: SampledSlab, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
     """p(z, x) of all asked beams into out (A, Z, X), of which (Z, X) must be contiguous."""
     line, n = solution.line, solution.fft
     right, left = solution.amplitudes_of(s.k0, fan)
@@ -87,7 +87,7 @@ SEARCHED, IN_EACH, MOST_ROWS, TRIED = 90, 40, 48, 5
 
 
 def fill_map(
-    s: Scene,
+    s: SampledSlab,
     fan: Fan,
     solution: Solution,
     transfer: Transfer,
@@ -113,7 +113,7 @@ def fill_map(
 
 
 def _fill_all(
-    s: Scene, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray
+    s: SampledSlab, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray
 ) -> float:
     """Every plane by itself, in blocks: of the response, and with many angles of the fields that are mixed."""
     k = solution.line.k
@@ -125,11 +125,10 @@ def _fill_all(
     return 0.0
 
 
-def _some_planes(s: Scene, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _some_planes(s: SampledSlab, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Planes, as indices of z, that are spread over each medium, and some that lie between them."""
-    faces = np.cumsum([0.0, *(values.periods * values.layers.thickness.sum() for values in s.segments)])
     order = np.argsort(z, kind="stable")
-    parts = np.split(order, np.searchsorted(z[order], faces))
+    parts = np.split(order, np.searchsorted(z[order], s.faces))
     searched, tried = [], []
     for part in parts:
         if part.size:
@@ -146,7 +145,7 @@ def _some_planes(s: Scene, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _fill_from_few(
-    s: Scene,
+    s: SampledSlab,
     fan: Fan,
     solution: Solution,
     transfer: Transfer,

@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media.sampled import Scene, is_lossless, with_loss
-from ..response import SHIFT, dispersion, perturbed
+from ..response.sampled_slab import SampledSlab
 from .argument_principle import (
     CLUSTER,
     Box,
@@ -42,25 +41,25 @@ class Mode(NamedTuple):
     error: float = 0.0
 
 
-def dispersion_of(s: Scene, loss: float = 0.0) -> Dispersion:
-    """D of a scene at one frequency, made more lossy by `loss`."""
-    s = with_loss(s, loss)
+def dispersion_of(s: SampledSlab, loss: float = 0.0) -> Dispersion:
+    """The dispersion function of a slab at one frequency, made more lossy by `loss`."""
+    s = s.with_loss(loss)
 
     def evaluate(kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        value, log = dispersion(s.segments, s.before, s.after, s.omega, np.asarray(kx, complex)[None])
+        value, log = s.dispersion(np.asarray(kx, complex))
         return value[0], log[0]
 
     return evaluate
 
 
-def find_modes(s: Scene, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
+def find_modes(s: SampledSlab, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
     """All modes in a box, and how many the argument principle counts; `most`: see `zeros`.
 
     UncertainCount where outlines of other nodes, or changes of sign of a lossless slab, say otherwise.
     """
     f = dispersion_of(s)
     total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
-    on_axis = real_zeros(f, box.left, box.right) if is_lossless(s) and box.low < 0 < box.high else []
+    on_axis = real_zeros(f, box.left, box.right) if s.lossless and box.low < 0 < box.high else []
     if total != again or len(on_axis) > total:
         raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
     found = located(s, box, total, most=most) if total > 0 else []
@@ -68,23 +67,22 @@ def find_modes(s: Scene, box: Box, most: float = math.inf) -> tuple[list[Mode], 
     return sorted(modes, key=lambda m: m.kx.real), total
 
 
-def _checked(s: Scene, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
+def _checked(s: SampledSlab, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
     """A mode with its residual, and with how far it moves when the layers' last bits do; of a cluster only the middle is known."""
     size = abs(mode.kx)
     residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
-    moved = s._replace(segments=[perturbed(segment, SHIFT) for segment in s.segments])
-    k, step = refine(dispersion_of(moved), mode.kx, 1e-3 * size)
+    k, step = refine(dispersion_of(s.rounded()), mode.kx, 1e-3 * size)
     error = max((abs(k - mode.kx) + step) / size, CLUSTER if cluster else 0.0)
     return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
 
 
-def located(s: Scene, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:
+def located(s: SampledSlab, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:
     """The `total` zeros of a box, those of a lossless slab on the axis by changes of sign if that finds them all.
 
     TooManyModes where more than `many` have to be found otherwise, or it takes too long (`most`: see `zeros`).
     """
     f = dispersion_of(s)
-    if is_lossless(s) and box.low < 0 < box.high:
+    if s.lossless and box.low < 0 < box.high:
         for samples in (600, 4800, 38_400):
             found = real_zeros(f, box.left, box.right, samples, 8 * many)
             if len(found) >= total:
@@ -94,12 +92,12 @@ def located(s: Scene, box: Box, total: int, many: float = math.inf, most: float 
     return zeros(f, box, box.right, total, most)
 
 
-def told(s: Scene, found: list[complex]) -> list[Mode]:
+def told(s: SampledSlab, found: list[complex]) -> list[Mode]:
     """Zeros as modes, forward or backward."""
     return [Mode(k, _direction(s, k, found.count(k) > 1), 0.0) for k in found]
 
 
-def _direction(s: Scene, k: complex, cluster: bool = False) -> int:
+def _direction(s: SampledSlab, k: complex, cluster: bool = False) -> int:
     """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
     # a cluster is known to half the digits only, and takes more loss to be told
     blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)

@@ -14,21 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contour.paths import Line
-from ..media.sampled import (
-    Scene,
-    at_frequency,
-    backward_branch,
-    is_lossless,
-    last_branch,
-    may_guide_backward,
-    nearest_branch,
-    on_the_right,
-    real_branches,
-    up_to_wall,
-    with_loss,
-)
-from ..response import dispersion
+from ..response.sampled_slab import SampledSlab, on_the_right
 from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
 from .guided import BESIDE, Mode, dispersion_of, located, told
 
@@ -61,12 +47,12 @@ NONE = MisplacedPoles((), ())
 UNCLEAR = MisplacedPoles((complex("nan"),), (0.0,))
 
 
-def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles:
+def misplaced(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles:
     """Poles on the wrong side of a contour that runs at `depth` below the axis, start < Re kx < band, or crosses it.
 
     Parameters
     ----------
-    s : Scene, of one frequency
+    s : SampledSlab, of one frequency
     depth, band, start : float, rad/m
 
     Returns
@@ -74,14 +60,14 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
     MisplacedPoles
         UNCLEAR where neither circles nor a crossing serve.
     """
-    if not may_guide_backward(s):
+    if not s.may_guide_backward:
         return NONE
-    s = up_to_wall(s)
+    s = s.up_to_wall()
     try:
         found = with_circles(s, _below(s, depth, band, start))
     except TooManyModes:
         found = UNCLEAR
-    if backward_branch(s) is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
+    if s.backward_branch is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
         return found
     try:
         return _with_crossing(s, depth, band, start) or found
@@ -89,15 +75,15 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
         return found
 
 
-def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
+def _below(s: SampledSlab, depth: float, band: float, start: float) -> list[Mode]:
     """Modes below the axis, or on it beyond the branch points, and above a contour at `depth` below it."""
-    edge, above = last_branch(s) * (1 + BESIDE), ON_AXIS * s.k0
-    cut = backward_branch(s)
-    if is_lossless(s):
+    edge, above = s.last_branch * (1 + BESIDE), ON_AXIS * s.k0
+    cut = s.backward_branch
+    if s.lossless:
         above = depth
     if cut is not None:
         return _beside_cut(s, cut.real, (start, band, depth), (edge, above))
-    if not is_lossless(s) and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
+    if not s.lossless and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
         return []
     found = few_modes(s, Box(start, min(edge, band), -depth, 0.0))
     if band > edge:
@@ -105,18 +91,20 @@ def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
     return found
 
 
-def _beside_cut(s: Scene, cut: float, contour: tuple[float, float, float], lifted: tuple[float, float]) -> list[Mode]:
+def _beside_cut(
+    s: SampledSlab, cut: float, contour: tuple[float, float, float], lifted: tuple[float, float]
+) -> list[Mode]:
     """The same where a branch cut leads from Re kx = `cut` downward: boxes end on either side of it."""
     (start, band, depth), (edge, above) = contour, lifted
     found = []
-    ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), last_branch(s) * (1 - BESIDE), edge, band]
+    ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), s.last_branch * (1 - BESIDE), edge, band]
     for left, right in itertools.pairwise(sorted({min(max(end, start), band) for end in ends})):
         if right - left > 3 * BESIDE * cut:
             found += few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
     return found
 
 
-def with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
+def with_circles(s: SampledSlab, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
     """Discs around the backward ones among some modes; `others` are misplaced too."""
     groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
     middles = tuple(sum(group) / len(group) for group in groups)
@@ -125,12 +113,12 @@ def with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) 
     return MisplacedPoles(middles, tuple(discs))
 
 
-def _branch_beside(s: Scene) -> float:
+def _branch_beside(s: SampledSlab) -> float:
     """Re kx of the nearest branch point beside the axis, where outlines take more nodes."""
-    return min(real_branches(s), default=last_branch(s))
+    return min(s.real_branches, default=s.last_branch)
 
 
-def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
+def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
     """Whether there is a mode in a box, its upper side raised by `above` to the right of `edge`: one search, mostly in vain."""
     values = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
     left, right, low, high, near, beyond, lift = values
@@ -138,7 +126,7 @@ def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
-def few_modes(s: Scene, box: Box) -> list[Mode]:
+def few_modes(s: SampledSlab, box: Box) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
     total = winding(dispersion_of(s), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
@@ -161,9 +149,9 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
     return groups
 
 
-def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]) -> float:
+def _free_disc(s: SampledSlab, k: complex, group: list[complex], others: list[complex]) -> float:
     """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
-    branches = (complex(on_the_right(b)) for b in s.branches)
+    branches = (complex(on_the_right(b)) for b in s.branch_points)
     radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
     f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
@@ -187,9 +175,9 @@ LOSSES = (1e-8, 1e-5)
 MOST_HERE = 20_000
 
 
-def _with_crossing(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles | None:
+def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles | None:
     """A contour that crosses the axis where it leaves the fewest poles misplaced; None where they are still too many."""
-    edge = last_branch(s) * (1 + 1e-3)
+    edge = s.last_branch * (1 + 1e-3)
     if band < 1.1 * edge:
         return None
     places = np.geomspace(edge, band, PLACES + 1)
@@ -226,7 +214,7 @@ def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> n
 
 
 def _crossing_at(
-    s: Scene, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
+    s: SampledSlab, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
 ) -> MisplacedPoles:
     """The crossing in the longest run of places where the fewest are wrong, and circles around those."""
     depth, band, start = contour
@@ -254,7 +242,7 @@ def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, ba
     raise TooManyModes
 
 
-def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex, ...]:
+def _found_above(s: SampledSlab, f: Dispersion, box: Box, total: int) -> tuple[complex, ...]:
     """The `total` forward modes of a box above the axis, which a contour above the axis leaves below it."""
     if total <= 0:
         return ()
@@ -270,10 +258,10 @@ REMEDIES = 10.0 ** np.arange(-6, 0)
 SHALLOWER = (1.0, 0.1, 0.01)
 
 
-def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
+def enough_loss(s: SampledSlab, depth: float, band: float, start: float) -> float | None:
     """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
     for loss in REMEDIES:
-        lossy = with_loss(s, float(loss))
+        lossy = s.with_loss(float(loss))
         for share in SHALLOWER:
             if misplaced(lossy, share * depth, band, start) is not UNCLEAR:
                 return float(loss)
@@ -283,19 +271,19 @@ def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | No
 # --- many frequencies -------------------------------------------------------------------------------------
 
 
-def some_misplaced(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
+def some_misplaced(s: SampledSlab, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
     """Whether a contour at `depth` may leave modes on its wrong side, by the argument principle at F frequencies at once: (F,).
 
     Of a lossless slab any mode below or on the axis counts, forward or not.
     """
-    if not may_guide_backward(s):
+    if not s.may_guide_backward:
         return np.zeros(depth.shape, bool)
-    if any(bool(np.any(values.layers.vanishing)) for values in s.segments):
+    if s.has_wall:
         return np.ones(depth.shape, bool)
 
     def evaluate(kx: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        part = s if owner.size == depth.size and np.array_equal(owner, everyone) else at_frequency(s, owner)
-        return dispersion(part.segments, part.before, part.after, part.omega, kx)
+        part = s if owner.size == depth.size and np.array_equal(owner, everyone) else s.take(owner)
+        return part.dispersion(kx)
 
     def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, lifted: Any = None) -> np.ndarray:
         try:
@@ -304,39 +292,10 @@ def some_misplaced(s: Scene, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
         except TooManyModes:
             return np.ones(depth.shape, int)
 
-    everyone, near = np.arange(depth.size), np.minimum(s.k0, last_branch(s))
-    zero, start = np.zeros(depth.shape), np.minimum(1e-3 * s.k0, 0.1 * nearest_branch(s))
-    edge = last_branch(s) * (1 + BESIDE)
-    if not is_lossless(s):
+    everyone, near = np.arange(depth.size), np.minimum(s.k0, s.last_branch)
+    zero, start = np.zeros(depth.shape), np.minimum(1e-3 * s.k0, 0.1 * s.nearest_branch)
+    edge = s.last_branch * (1 + BESIDE)
+    if not s.lossless:
         return count(start, band, -depth, zero, (edge, ON_AXIS * s.k0)) > 0
     below = count(start, np.minimum(edge, band), -depth, zero) > 0
     return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
-
-
-# --- circles ----------------------------------------------------------------------------------------------
-
-
-def with_residues(
-    s: Scene, line: Line, found: MisplacedPoles, across: float, along: float, second: bool = False
-) -> Line:
-    """Add to a contour small circles around the poles on its wrong side.
-
-    Trapezoid rule on a circle in the disc that holds nothing else, so small that neither e^{ikx} (over the distance `across`)
-    nor e^{i kz z} (over `along`) turns or grows much on it: aliasing falls with the number of nodes as 1/n!. The `second`
-    of two contours that are compared takes other circles. Clockwise where the contour passes below the pole, counter-clockwise
-    where it passes above.
-    """
-    count, share = (36, 0.8) if second else (32, 1.0)
-    nodes, weights = [], []
-    for k, free in zip(found.poles, found.radii, strict=True):
-        sense = 1 if k.real < found.crossing else -1
-        if sense * (k.imag - np.interp(k.real, line.k.real, line.k.imag)) > 0:
-            turn = np.exp(-2j * np.pi * sense * (np.arange(count) + 0.5) / count)
-            slope = max(abs(k / np.sqrt(b * b - k * k + 0j)) for b in s.branches)  # |dkz/dkx|
-            radius = share * min(free, 1.0 / (across + along * slope))
-            nodes.append(k + radius * turn)
-            weights.append(radius * turn * (-2j * np.pi * sense / count) / (2 * np.pi))
-    if not nodes:
-        return line
-    # in front, so that the contour's end stays the last node
-    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]), circles=count * len(nodes))

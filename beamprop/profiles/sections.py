@@ -18,11 +18,10 @@ from .. import memory
 from ..arrays import fft
 from ..contour import choose, near_normal, paths
 from ..contour.paths import Line, OpenPlan, Reach
-from ..conventions import outgoing_kz
 from ..fields import evaluate as field_sums
-from ..media.sampled import Scene, at_frequency, is_lossless, nearest_branch
 from ..modes import misplaced
-from ..response import solve, transfer_function
+from ..response import transfer_function
+from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer, shifts
 from ..sources.angles import single
 from ..sources.beams import Beam
@@ -53,26 +52,25 @@ class Measures(NamedTuple):
     error: np.ndarray
 
 
-def far_face(s: Scene, z0: float) -> Plane:
+def far_face(s: SampledSlab, z0: float) -> Plane:
     """Transfer from the launch plane z0 to the far face."""
 
     def plane(kx: np.ndarray) -> np.ndarray:
-        kz = outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before))
-        return solve(s.segments, s.before, s.after, s.omega, kx).t * np.exp(-1j * kz * z0)
+        return s.response(kx).t * np.exp(-1j * s.kz_before(kx) * z0)
 
     return plane
 
 
-def without(s: Scene, distance: np.ndarray) -> Plane:
+def without(s: SampledSlab, distance: np.ndarray) -> Plane:
     """Transfer over distances (F,) in the medium in front."""
 
     def plane(kx: np.ndarray) -> np.ndarray:
-        return np.exp(1j * outgoing_kz(kx, s.omega, *(v[:, None] for v in s.before)) * distance[:, None])
+        return np.exp(1j * s.kz_before(kx) * distance[:, None])
 
     return plane
 
 
-def landing(s: Scene, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
+def landing(s: SampledSlab, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half-width (F,) of windows that hold the beam, by stationary phase.
 
     The beam's strong plane waves span the window.
@@ -131,7 +129,7 @@ class Modes(NamedTuple):
         return self.at(x, self.slopes(0))[0]
 
 
-def _both_modes(s: Scene, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Modes, Modes]:
+def _both_modes(s: SampledSlab, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Modes, Modes]:
     """The plane waves at the plane, on a line and on another to judge it by; one response for both."""
     lines = paths.open_line(plan), paths.open_line(plan.other())
     k, weight = (np.concatenate([line[i] for line in lines], axis=-1) for i in (0, 1))
@@ -141,20 +139,20 @@ def _both_modes(s: Scene, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Mod
     return Modes(lines[0], right[:, :n], left[:, :n]), Modes(lines[1], right[:, n:], left[:, n:])
 
 
-def _plan(s: Scene, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
+def _plan(s: SampledSlab, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
     lo, hi = beam.band(s.k0, rtol * 1e-2)
     source = beam.reach(rtol * 1e-2)
     extent = np.abs(middle - beam.centre) + half
-    branch = nearest_branch(s)
+    branch = s.nearest_branch
     return paths.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
 
 
 class Route(NamedTuple):
     """How a beam gets to the plane that is measured, at F frequencies."""
 
-    scene: Scene
-    plane: Callable[[Scene, np.ndarray], Plane]  #: of a scene and the lengths along z
-    transfer: Callable[[Scene], Transfer]  #: the same for the scene of one frequency
+    slab: SampledSlab
+    plane: Callable[[SampledSlab, np.ndarray], Plane]  #: of a slab and the lengths along z
+    transfer: Callable[[SampledSlab], Transfer]  #: the same for the slab of one frequency
     z: np.ndarray  #: (F,) where that transfer meets the plane
     path: np.ndarray  #: (F,) length along z
     guided: bool  #: whether there is a slab on the way
@@ -162,11 +160,11 @@ class Route(NamedTuple):
 
 def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     """Width, peak and centroid of the profiles across one plane per frequency."""
-    s = route.scene
+    s = route.slab
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     out, good = _together(route, beam, rtol, level)
     for i in np.flatnonzero(~good):
-        one = at_frequency(s, int(i))
+        one = s.take(int(i))
         found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
         for values, value in zip(out, found, strict=True):
             values[i] = value
@@ -181,7 +179,7 @@ ROUND = 0.25
 
 def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
     """Measures at all frequencies by the fast path, in halves where that takes many plane waves, and which are good."""
-    s, count = route.scene, route.scene.omega.shape[0]
+    s, count = route.slab, np.size(route.slab.k0)
     out, good = Measures(*(np.full(count, np.nan) for _ in Measures._fields)), np.zeros(count, bool)
     if not beam.entire:
         return out, good
@@ -206,15 +204,15 @@ def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Meas
 
 def _taken(route: Route, rows: np.ndarray) -> Route:
     """Some frequencies of a route."""
-    return route._replace(scene=at_frequency(route.scene, rows), z=route.z[rows], path=route.path[rows])
+    return route._replace(slab=route.slab.take(rows), z=route.z[rows], path=route.path[rows])
 
 
-def _backward(s: Scene, plan: OpenPlan) -> np.ndarray:
+def _backward(s: SampledSlab, plan: OpenPlan) -> np.ndarray:
     """Where the lines leave a mode on their wrong side, (F,)."""
     bad = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
-    for i in np.flatnonzero(bad) if is_lossless(s) else []:  # what was counted may be forward
-        one = at_frequency(s, int(i))
-        start = min(1e-3 * one.k0, 0.1 * nearest_branch(one))
+    for i in np.flatnonzero(bad) if s.lossless else []:  # what was counted may be forward
+        one = s.take(int(i))
+        start = min(1e-3 * one.k0, 0.1 * one.nearest_branch)
         found = misplaced.misplaced(one, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
         bad[i] = bool(found.poles) or math.isfinite(found.crossing)
     return bad
@@ -328,12 +326,11 @@ def _newton_level(
 
 
 def _measured_alone(
-    s: Scene, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
+    s: SampledSlab, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
 ) -> tuple[float, float, float, int, float]:
     """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level."""
     planes = np.array([z])
-    batch = s._replace(k0=np.array([s.k0]), branches=tuple(np.array([b]) for b in s.branches))
-    middle, half = (float(v[0]) for v in landing(batch, beam, lambda k: transfer(k[0], planes)))
+    middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], planes)))
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
@@ -355,7 +352,7 @@ def _measured_alone(
 FAINT = 1e-4
 
 
-def needed(s: Scene, beam: Beam, solution: choose.Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+def needed(s: SampledSlab, beam: Beam, solution: choose.Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """As many of even positions as those plane waves need that get there: of a sharp edge's most die on the way."""
     right, left = solution.amplitudes_of(s.k0, single(beam))
     strength = np.abs(h[0]) * (np.abs(right[0]) + np.abs(left[0]))
@@ -365,7 +362,7 @@ def needed(s: Scene, beam: Beam, solution: choose.Solution, h: np.ndarray, x: np
     return x if count >= x.size else np.linspace(x[0], x[-1], count)
 
 
-def _between(s: Scene, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def _between(s: SampledSlab, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     return lambda at: field_sums.point_sum(s, beam, line, h, at)[0]
 
 
@@ -383,15 +380,14 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
-    """Widths at all frequencies of a scene, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
+def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
+    """Widths at all frequencies of a slab, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
     wavelengths = 2 * np.pi / s.k0
 
     def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
-        alone = s._replace(branches=(s.k0 + 0j,))
-        route = Route(alone, without, transfer_function.free, distance, distance, False)
+        route = Route(s.without_slab(), without, transfer_function.free, distance, distance, False)
         found = measure(route, beam, rtol)
         return found.width, found.crossings, found.error
 
@@ -412,7 +408,7 @@ def rows(s: Scene, beam: Beam, rtol: float, air_distance: float | None) -> tuple
     return Row(*widths, far.peak, far.centroid), np.stack(met), np.stack(errors)
 
 
-def _launch_widths(s: Scene, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _launch_widths(s: SampledSlab, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Widths of the launch profile itself, crossings and errors; |p| does not depend on the frequency."""
     level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
     k0 = float(s.k0[0])

@@ -118,7 +118,7 @@ def normalised(state: State) -> State:
     return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
 
-def at_frequencies(layers: LayerValues, rows: slice) -> LayerValues:
+def at_frequencies(layers: LayerValues, rows: slice | np.ndarray) -> LayerValues:
     """Some frequencies of a cell's values."""
     mass, compliance, mobility, vanishing = (
         v[:, rows] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)

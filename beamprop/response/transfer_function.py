@@ -1,6 +1,6 @@
 """What becomes of a plane wave of the source on its way: the response in front of, inside and behind a slab.
 
-Everything here is for one frequency; a `Scene` holds what does not change from line to line.
+Everything here is for one frequency; a `SampledSlab` holds what does not change from line to line.
 """
 
 from __future__ import annotations
@@ -10,23 +10,21 @@ from typing import Any
 
 import numpy as np
 
-from ..conventions import outgoing_kz
-from ..media.sampled import Scene
-from . import solve
+from .sampled_slab import SampledSlab
 
 #: h(kx, z): what a plane wave of the source's spectrum has become at z; (Z, n).
 #: h(kx, z, shift): the same at kx (1 + shift) and w (1 - shift), to see what rounding does.
 Transfer = Callable[..., np.ndarray]
 
 
-def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
+def factors(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
     """h(z, kx): total pressure at z per unit of the source's spectrum on z = z0; (Z, n)."""
     out = np.empty((z.size, kx.size), complex)
     front, behind = z <= 0, z >= s.thickness
     inside = ~front & ~behind
-    kz = outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before))
+    kz = s.kz_before(kx)[0]
     launch = np.exp(-1j * kz * z0)
-    res = solve(s.segments, s.before, s.after, s.omega, kx[None], z[inside])
+    res = s.response(kx, z[inside])
     with np.errstate(under="ignore"):
         if front.any():
             depth = z[front][:, None]
@@ -34,37 +32,25 @@ def factors(s: Scene, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
         if inside.any():
             out[inside] = res.inside[0] * launch if z0 else res.inside[0]
         if behind.any():
-            kz2 = outgoing_kz(kx, s.omega[0], *(v[0] for v in s.after))
+            kz2 = s.kz_after(kx)[0]
             out[behind] = res.t[0] * launch * np.exp(1j * kz2 * (z[behind] - s.thickness)[:, None])
     return out
 
 
-def through(s: Scene, z0: float) -> Transfer:
+def through(s: SampledSlab, z0: float) -> Transfer:
     """The transfer through a slab from the launch plane z0."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return factors(_shifted(s, shift), kx * (1 + shift), z, z0)
+        return factors(s.perturbed(shift), kx * (1 + shift), z, z0)
 
     return transfer
 
 
-def _shifted(s: Scene, shift: float) -> Scene:
-    """w (1 - shift), and layers of a cell that differ among themselves by an eighth of that: densities may cancel."""
-    if not shift:
-        return s
-    segments = []
-    for values in s.segments:
-        mass = values.layers.mass
-        uneven = 1 + shift / 8 * np.where(np.sin(2.4 * np.arange(mass.shape[0])) > 0, 1, -1)[:, None]
-        segments.append(values._replace(layers=values.layers._replace(mass=mass * uneven)))
-    return s._replace(omega=s.omega * (1 - shift), segments=segments)
-
-
-def free(s: Scene) -> Transfer:
+def free(s: SampledSlab) -> Transfer:
     """The transfer through the medium in front alone, over the distance z."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        kz = outgoing_kz(kx * (1 + shift), _shifted(s, shift).omega[0], *(v[0] for v in s.before))
+        kz = s.perturbed(shift).kz_before(kx * (1 + shift))[0]
         with np.errstate(
             over="ignore", invalid="ignore"
         ):  # over 1e39 m no contour is flat enough: refused by its plane waves

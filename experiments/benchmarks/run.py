@@ -19,8 +19,8 @@ from tqdm import tqdm
 import beamprop as bp
 from beamprop import response
 from beamprop.contour import paths
-from beamprop.media import sampled
 from beamprop.profiles import sections
+from beamprop.response import sampled_slab
 
 FREQUENCY = 2500.0
 WAVELENGTH = 343.0 / FREQUENCY
@@ -89,12 +89,12 @@ def widths(options: argparse.Namespace) -> list[Row]:
     ]
 
 
-def _own_modes(frequency: float) -> tuple[sampled.Scene, np.ndarray]:
+def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
     """A frequency's scene, and the line that `beam_width` takes for it."""
-    batch = sampled.scenes(SLAB, np.array([frequency]))
+    batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     middle, half = sections.landing(batch, BEAM, sections.far_face(batch, BEAM.z0))
     plan = sections._plan(batch, BEAM, np.array([SLAB.thickness]), middle, half, 1e-8)
-    return sampled.scene(SLAB, frequency), paths.open_line(plan).k[0]
+    return sampled_slab.sample(SLAB, frequency), paths.open_line(plan).k[0]
 
 
 def angles(options: argparse.Namespace) -> list[Row]:
@@ -123,7 +123,7 @@ def aperiodic() -> bp.Slab:
 
 def many_layers(options: argparse.Namespace) -> list[Row]:
     """(e) 4500 different layers, 400 modes, the field at 1000 depths."""
-    s = sampled.scene(aperiodic(), FREQUENCY)
+    s = sampled_slab.sample(aperiodic(), FREQUENCY)
     kx = np.linspace(0, 60, 400)[None] - 1j
     _, z = grids()
     (ours,) = measure(

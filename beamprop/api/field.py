@@ -1,0 +1,76 @@
+"""`field`: the total pressure of a beam in front of, inside and behind a slab."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import memory, validate
+from ..fields.question import fill, prepare
+from ..media.structures import Slab
+from ..sources.beams import Beam
+from . import checks
+from .checks import Progress
+from .field_question import checked_question, labelled, largest
+
+
+def field(
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    x: Any,
+    z: Any,
+    angle: Any = None,
+    boundary: str = "open",
+    period: float | None = None,
+    rtol: float = 1e-8,
+    progress: Progress = iter,
+) -> xr.Dataset:
+    """Total pressure of a beam in front of, inside and behind a slab.
+
+    Parameters
+    ----------
+    slab : Slab
+    beam : GaussianBeam, Profile or Slits
+    frequency : float or 1-D array, Hz
+    x, z : float or 1-D array, m
+        Any positions; z not in front of the launch plane ``beam.z0``.
+    angle : float or 1-D array, degree, optional
+        Overrides the beam's. All angles share one response.
+    boundary : "open" or "periodic"
+        "open": one beam in open space, the limit of vanishing absorption. "periodic": an array of beams, `period`
+        apart: the plain sum over real kx, which is what a calculation with periodic sides answers.
+    period : float, m
+        For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
+    rtol : float
+        Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
+    progress : function
+        Wraps the list of frequencies that is worked through (``tqdm.tqdm``, say).
+
+    Returns
+    -------
+    Dataset
+        `p` on (frequency, angle, z, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
+        open fields: the largest difference between two contours of integration that share no error term, and what planes
+        gain that are made of others.
+
+    Warns
+    -----
+    AccuracyWarning
+        The estimate is above rtol.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, what was expected and what came; also for what does not fit into memory.
+    """
+    validate.function(progress, "progress")
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    memory.check_field(question.shape)
+    p, errors = np.empty(question.shape, complex), np.empty(question.shape[:2])
+    for i, _ in enumerate(progress(question.frequency)):
+        errors[i] = fill(prepare(question, i), slice(None), slice(None), p[i])
+    checks.warn_if_inaccurate(largest(errors), question.rtol)
+    return labelled(labels, errors, p)

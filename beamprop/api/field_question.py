@@ -1,0 +1,112 @@
+"""What `field` and `save_field` share: the question checked, and its answer labelled."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from .. import validate
+from ..contour import paths
+from ..fields.question import FieldQuestion
+from ..io import datasets
+from ..media.structures import Slab
+from ..sources.beams import Beam, moved_to_origin
+from . import checks
+
+
+class Labels(NamedTuple):
+    """What an answer is labelled with: axes as they were given (scalars stay scalars), and the arguments."""
+
+    axes: dict[str, np.ndarray]
+    slab: Slab
+    beam: Beam
+    boundary: str
+    period: float | None
+    rtol: float
+
+    @property
+    def dims(self) -> tuple[str, ...]:
+        """Names of the axes that are arrays."""
+        return checks.dims(**self.axes)[0]
+
+    @property
+    def pick(self) -> tuple[Any, ...]:
+        """The index that drops scalar axes of (frequency, angle, z, x)."""
+        return checks.dims(**self.axes)[1]
+
+
+def checked_question(
+    slab: Slab, beam: Beam, frequency: Any, x: Any, z: Any, angle: Any, boundary: str, period: float | None, rtol: float
+) -> tuple[FieldQuestion, Labels]:
+    """The question of a field, or a ValueError that names the argument."""
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f, xs, zs = validate.axis(frequency, "frequency", positive=True), validate.axis(x, "x"), validate.axis(z, "z")
+    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    validate.word(boundary, "boundary", "open", "periodic")
+    if np.min(zs) < beam.z0:
+        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+    axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
+    flat_f, flat_angles, flat_z, positions = (np.atleast_1d(v) for v in axes.values())
+    source, origin = moved_to_origin(beam)
+    if boundary == "periodic":
+        period = _period(period, positions - origin, source, slab, flat_f)
+    elif period is not None:
+        raise ValueError(f"period: expected none with boundary='open', got {period!r}")
+    question = FieldQuestion(slab, source, flat_f, flat_angles, flat_z, positions - origin, period, rtol)
+    return question, Labels(axes, slab, beam, boundary, period, rtol)
+
+
+def largest(errors: np.ndarray) -> float:
+    """The largest of some estimates, 0 of those that are not known."""
+    return float(np.max(errors, initial=0.0, where=np.isfinite(errors)))
+
+
+def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:
+    """The dataset of p (F, A, Z, X) and errors (F, A); without p, all else."""
+    dims, pick = labels.dims, labels.pick
+    variables: dict[str, Any] = {} if p is None else {"p": (dims, p[pick])}
+    if labels.boundary == "open":
+        few = tuple(d for d in dims if d in ("frequency", "angle"))
+        variables["error_estimate"] = (few, errors[pick[:2]])
+    ds = datasets.make(
+        variables,
+        checks.coords(**labels.axes),
+        "field",
+        np.atleast_1d(labels.axes["frequency"]),
+        slab=labels.slab,
+        beam=labels.beam,
+        boundary=labels.boundary,
+        period=labels.period,
+        rtol=labels.rtol,
+    )
+    ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness}
+    if labels.period is not None:
+        ds.attrs["period"] = labels.period
+    return ds
+
+
+def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
+    """The period of a periodic boundary; refused where neighbouring beams overlap."""
+    if period is None:
+        dx = paths.grid_of(x).step
+        if not dx:
+            raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
+        period = dx * x.size
+    value = validate.as_number(period, "period", positive=True)
+    k0 = float(checks.k0(slab, frequency)[0])
+    across = beam.profile(beam.centre + value / 2 * np.linspace(-1, 1, 2001), k0)
+    largest = float(np.abs(across).max())
+    if largest == 0:  # a gap of the beam is all that such a period holds
+        raise ValueError(
+            f"period: expected a grid wide enough for the beam, got {value:.6g} m, in which the launched |p| is zero"
+        )
+    seam = float(max(abs(across[0]), abs(across[-1])) / largest)
+    if seam > 1e-2:
+        raise ValueError(
+            f"period: expected a grid wide enough for the beam, got {value:.6g} m, at whose ends the launched |p| is "
+            f"still {seam:.2g} of its largest"
+        )
+    return value

@@ -1,0 +1,60 @@
+"""`fwhm`: the width of a profile."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import xarray as xr
+
+from .. import validate
+from ..profiles import fwhm as profile_width
+
+
+def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> xr.DataArray:
+    """Full width at half maximum of a profile along a dimension.
+
+    Parameters
+    ----------
+    profile : DataArray
+        Complex pressure (or \\|p\\|).
+    dim : str
+    width_of : "pressure" or "intensity"
+        Width of \\|p\\|, or of \\|p\\|^2.
+
+    Returns
+    -------
+    DataArray
+        In the units of `dim`, located on a cubic spline of the samples; nan with a warning where the half level is not
+        reached inside the window, and a warning where it is met more than twice.
+    """
+    validate.instance(profile, xr.DataArray, "profile")
+    if not isinstance(dim, str) or dim not in profile.dims:
+        raise ValueError(f"dim: expected one of {', '.join(map(str, profile.dims))}, got {dim!r}")
+    validate.word(width_of, "width_of", *profile_width.HALF_LEVEL)
+    if profile.sizes[dim] < 4:
+        raise ValueError(f"profile: expected at least 4 samples along {dim}, got {profile.sizes[dim]}")
+    ordered = profile.sortby(dim)
+    x = np.asarray(ordered[dim], float)
+    if not np.all(np.isfinite(ordered)):
+        raise ValueError("profile: expected finite values, got NaN or infinity")
+
+    level, crossings = profile_width.HALF_LEVEL[width_of], [0]
+
+    def one(p: np.ndarray) -> float:
+        found = profile_width.full_width(x, p, level)
+        crossings.append(int(np.count_nonzero(np.diff(np.abs(p) > level * found.peak))))
+        return found.width
+
+    out = xr.apply_ufunc(one, ordered, input_core_dims=[[dim]], vectorize=True, output_dtypes=[float])
+    if np.any(np.isnan(out)):
+        warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)
+    if max(crossings) > 2:
+        warnings.warn(
+            f"fwhm: the half level is met up to {max(crossings)} times; the width is between the two places nearest to "
+            "the peak",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+    out.attrs = {"units": profile[dim].attrs.get("units", "m"), "long_name": "full width at half maximum"}
+    return out.rename("fwhm")

@@ -1,0 +1,115 @@
+"""`guided_modes`: the modes that a slab guides."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import memory, validate
+from ..io import datasets
+from ..media.structures import Slab
+from ..modes import argument_principle, guided
+from ..response.sampled_slab import sample
+from . import checks
+
+
+def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip_over_k0: float = 0.5) -> xr.Dataset:
+    """The modes that a slab guides: zeros of its dispersion function, found without a guess.
+
+    The argument principle counts them in the strip k_edge < Re kx < kx_over_k0_max k0, \\|Im kx\\| < strip_over_k0 k0, where
+    k_edge is the larger wavenumber of the two half-spaces; boxes are halved until Newton's method finds each one. -kx is a
+    mode too.
+
+    Parameters
+    ----------
+    slab : Slab
+    frequency : float or 1-D array, Hz
+    kx_over_k0_max, strip_over_k0 : float
+        The strip, over the wavenumber of ``slab.before``.
+
+    Returns
+    -------
+    Dataset
+        On (frequency, mode), by growing Re kx: complex `kx` [rad/m] and `kx_over_k0`; `direction` +1 where energy flows along
+        +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`, the
+        last step of Newton's method over kx; `error_estimate`, how far a mode moves, over kx, with the last bits of the
+        layers (modes that are nearly one feel their square root). nan and 0 where a frequency has fewer modes than another;
+        `count`, on (frequency), is how many the argument principle counts.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6.
+
+    Raises
+    ------
+    ValueError
+        Wrong arguments, a layer of density 0, or modes that were counted and not found.
+    """
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
+    highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
+    strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
+    flat = np.atleast_1d(f)
+    found = [_modes_at(slab, float(g), highest, strip) for g in flat]
+    most = max(len(rows) for rows, _ in found)
+    kx = np.full((flat.size, most), complex(np.nan, np.nan))
+    direction, (residual, error) = np.zeros(kx.shape, int), np.full((2, *kx.shape), np.nan)
+    for i, (rows, _) in enumerate(found):
+        for j, mode in enumerate(rows):
+            kx[i, j], direction[i, j], residual[i, j], error[i, j] = mode
+    if most:
+        checks.warn_of_plane_waves(np.nan_to_num(error, nan=0.0), flat, "mode", np.arange(most))
+    k0 = slab.before.wavenumber(flat).real
+    dims, pick = (("frequency",), ...) if f.ndim else ((), 0)
+    both = (*dims, "mode")
+    variables = {
+        "kx": (both, kx[pick]),
+        "kx_over_k0": (both, (kx / k0[:, None])[pick]),
+        "direction": (both, direction[pick]),
+        "residual": (both, residual[pick]),
+        "error_estimate": (both, error[pick]),
+        "count": (dims, np.array([total for _, total in found])[pick]),
+    }
+    coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
+    return datasets.make(
+        variables, coords, "guided_modes", flat, slab=slab, kx_over_k0_max=highest, strip_over_k0=strip
+    )
+
+
+def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
+    s = sample(slab, frequency)
+    if s.has_wall:
+        raise ValueError("slab: a layer of density 0 blocks every kx other than 0, the slab guides nothing")
+    edge = s.last_branch * (1 + guided.BESIDE)
+    if highest * s.k0 <= edge:
+        raise ValueError(
+            f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
+        )
+    most = memory.most_values()
+    try:
+        found, total = guided.find_modes(
+            s, argument_principle.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0), most
+        )
+    except argument_principle.TooManyValues:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip that {most:.2g} values of the dispersion function search through, got "
+            f"{highest:g} by {strip:g} k0; search a part of it, by kx_over_k0_max and strip_over_k0"
+        ) from None
+    except argument_principle.TooManyModes:
+        raise ValueError(
+            f"slab: two of its modes at {frequency} Hz are one to rounding, and run both ways; add loss"
+        ) from None
+    except argument_principle.UncertainCount as counts:
+        raise ValueError(
+            f"kx_over_k0_max: expected a strip in which modes can be counted, got {counts} modes at {frequency} Hz; "
+            "one may lie on the edge of the strip: change it a little"
+        ) from None
+    if len(found) != total:
+        raise ValueError(
+            f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(found)} found; "
+            "one may lie on the edge of the strip: change it a little"
+        )
+    return found, total

@@ -1,0 +1,146 @@
+"""`scattering`: reflection and transmission of plane waves by a slab."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from .. import memory, response, validate
+from ..conventions import outgoing_kz
+from ..io import datasets
+from ..media.structures import Slab, materials, slab_values
+from . import checks
+
+
+def scattering(
+    slab: Slab,
+    frequency: Any,
+    *,
+    kx: Any = None,
+    kx_over_k0: Any = None,
+    angle: Any = None,
+    estimate: bool = True,
+) -> xr.Dataset:
+    """Exact reflection and transmission of plane waves by a slab.
+
+    Parameters
+    ----------
+    slab : Slab
+    frequency : float or 1-D array, Hz
+    kx, kx_over_k0, angle : float or 1-D array
+        One of: lateral wavenumber [rad/m] (may be complex: continued as a small loss would, see
+        `conventions.outgoing_kz`), the same over that of ``slab.before``, or angle of incidence [degree].
+    estimate : bool
+        Estimate what rounding does, by a second evaluation with the last bits of kx and layers moved, and answer by a more
+        robust form where it does much (near-perfect lenses, surfaces of negative density). False: half the time, no estimate,
+        and at such places digits may be lost without a warning.
+
+    Returns
+    -------
+    Dataset
+        On (frequency, the one given): complex `r`, `t`; `transmissivity` = \\|t\\|^2 and `reflectivity` = \\|r\\|^2 (the paper's
+        pressure ratios, for evanescent waves too); `energy_transmission` = \\|t\\|^2 Re(kz_after/rho_after) /
+        Re(kz_before/rho_before) and `absorption` = 1 - reflectivity - energy_transmission, nan unless the incident
+        wave propagates in a lossless `before`. With `estimate` also `r_error_estimate`, the error of r over the larger of \\|r\\|
+        and 1 (the incident wave), `t_error_estimate`, that of t over \\|t\\|, and `error_estimate`, the larger of both. A kx
+        that is k0 to the last bit counts as grazing incidence itself.
+
+    Warns
+    -----
+    AccuracyWarning
+        An estimated error is above 1e-6: near a guided mode or a sharp resonance the last bits of kx and of the layers decide.
+
+    Raises
+    ------
+    ValueError
+        Names the argument, what was expected and what came.
+    """
+    validate.instance(slab, Slab, "slab")
+    f = validate.axis(frequency, "frequency", positive=True)
+    name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
+    flat = np.atleast_1d(f)
+    axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
+    names = WAVES + (ERRORS if estimate else ())
+    variables = {n: np.empty(k.shape, complex if n in ("r", "t") else float) for n in names}
+    for rows, columns in _blocks(k.shape):
+        answers = _answer(slab, flat[rows], k[rows, columns], name, estimate)
+        for whole, part in zip(variables.values(), answers, strict=True):
+            whole[rows, columns] = part
+    dims, pick = checks.dims(frequency=f, **{name: axis})
+    if estimate:
+        checks.warn_of_plane_waves(variables["error_estimate"], flat, name, np.atleast_1d(axis))
+    coords = checks.coords(frequency=f, **{name: axis})
+    coords |= _other_coords(slab, name, k, flat, dims, pick)
+    return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
+
+
+#: What is told of plane waves, and of its errors.
+WAVES = ("r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+ERRORS = ("r_error_estimate", "t_error_estimate", "error_estimate")
+
+
+def _blocks(shape: tuple[int, int]) -> Iterator[tuple[slice, slice]]:
+    """Parts of (frequency, kx) that are answered at a time: equal ones, so that none is too small to be fast."""
+    many, long = shape
+    parts = -(-long // memory.WAVES_AT_A_TIME)
+    columns = -(-long // parts)
+    rows = max(1, memory.WAVES_AT_A_TIME // columns)
+    for i, j in itertools.product(range(0, many, rows), range(0, long, columns)):
+        yield slice(i, i + rows), slice(j, j + columns)
+
+
+def _answer(slab: Slab, frequency: np.ndarray, kx: np.ndarray, name: str, estimate: bool) -> tuple[np.ndarray, ...]:
+    """The variables of `WAVES` at some frequencies and kx, and those of `ERRORS` if asked for, (F, n) each."""
+    before, after = slab.before.at(frequency), slab.after.at(frequency)
+    omega = 2 * np.pi * frequency[:, None]
+    res, errors = _solved(slab, frequency, omega, kx, estimate)
+    with np.errstate(over="ignore"):
+        reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
+    if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
+        raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
+    energies = _energies(reflectivity, transmissivity, kx, omega, before, after)
+    return (res.r, res.t, transmissivity, reflectivity, *energies, *errors)
+
+
+def _solved(
+    slab: Slab, frequency: np.ndarray, omega: np.ndarray, kx: np.ndarray, estimate: bool
+) -> tuple[response.Response | response.Checked, tuple[np.ndarray, ...]]:
+    """r and t, and the variables that tell their errors."""
+    values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
+    if not estimate:
+        return response.solve(values, before, after, omega, kx), ()
+    rows = [materials(cell, frequency) for cell, _ in slab.segments]
+    res = response.solve_checked(values, rows, before, after, omega, kx)
+    return res, (res.r_error, res.t_error, np.maximum(res.r_error, res.t_error))
+
+
+def _energies(
+    reflectivity: np.ndarray, transmissivity: np.ndarray, kx: np.ndarray, omega: np.ndarray, before: Any, after: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """energy_transmission and absorption; nan where the incident wave carries no power of its own."""
+    front, behind = ([v[:, None] for v in fluid] for fluid in (before, after))
+    kz1 = outgoing_kz(kx, omega, *front)
+    alike = all(np.array_equal(a, b) for a, b in zip(front, behind, strict=True))
+    y1 = kz1 / front[0]
+    y2 = (y1 if alike else outgoing_kz(kx, omega, *behind) / behind[0]).real
+    lossless = np.all([np.imag(v) == 0 for v in front], axis=0)
+    carries = lossless & (np.imag(kx) == 0) & (np.abs(y1.imag) <= 1e-12 * np.abs(y1))
+    ratio = np.divide(y2, y1.real, out=np.where(transmissivity == 0, 0.0, 1.0), where=carries & (y1.real != 0))
+    T = np.where(carries, transmissivity * ratio, np.nan)
+    return T, 1 - reflectivity - T
+
+
+def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, dims: tuple, pick: tuple) -> dict:
+    """kx and kx_over_k0 (and the angle, when that was given) as coordinates on the axis."""
+    others: dict[str, Any] = {}
+    if name != "kx":
+        fixed = frequency.size == 1 or np.array_equal(k, np.broadcast_to(k[:1], k.shape))
+        others["kx"] = (dims, k[pick]) if not fixed else (dims[-1:] if pick[1] != 0 else (), k[0][pick[1]])
+    k0 = slab.before.wavenumber(frequency).real
+    if name != "kx_over_k0" and np.all(np.isfinite(k0) & (k0 > 0)):
+        others["kx_over_k0"] = (dims, (k / k0[:, None])[pick])
+    return others

@@ -1,0 +1,323 @@
+"""A slab at given frequencies: the only door from slabs to arrays.
+
+Contours, modes, fields and profiles ask a `SampledSlab` for its response, its dispersion function and where its half-spaces have
+their branch points; what it is made of they do not know. `FluidSlab` is the one of layered fluids.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+
+from ..conventions import outgoing_kz
+from ..media.structures import FluidValues, LayerValues, SegmentValues, Slab, slab_values
+from .cell import cell_matrix
+from .conditioning import SHIFT
+from .layer import at_frequencies, perturbed
+from .slab import Response, dispersion, solve
+
+
+class SampledSlab(Protocol):
+    """What is asked of a slab at F frequencies, w = 2 pi f.
+
+    kx is (n,) or (F, n) [rad/m]; answers are (F, n). Of one frequency `k0` is a float and `branch_points` are complex numbers, of
+    several they are (F,).
+    """
+
+    @property
+    def k0(self) -> Any:
+        """Wavenumber of the medium in front [rad/m]."""
+
+    @property
+    def thickness(self) -> float:
+        """From the near face z = 0 to the far face [m]."""
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Depths between which the medium is of one kind, a layer or a run of periods, from 0 to `thickness` [m]."""
+
+    @property
+    def branch_points(self) -> tuple[Any, ...]:
+        """Complex kx at which kz of a half-space vanishes, Im >= 0; Re < 0 where it carries backward waves."""
+
+    @property
+    def nearest_branch(self) -> Any:
+        """Distance of the nearest branch point from kx = 0, shaped like `k0`."""
+
+    @property
+    def last_branch(self) -> Any:
+        """The largest |Re kx| of a branch point: guided modes lie beyond; shaped like `k0`."""
+
+    @property
+    def real_branches(self) -> list[float]:
+        """|Re kx| of the branch points that lie nearer to the real axis than to the imaginary one; of one frequency."""
+
+    @property
+    def backward_branch(self) -> complex | None:
+        """The branch point, with Re kx > 0, of a half-space that carries backward waves; its cut leads downward. Of one frequency."""
+
+    @property
+    def lossless(self) -> bool:
+        """Whether no layer and no half-space has loss."""
+
+    @property
+    def may_guide_backward(self) -> bool:
+        """Whether some layer or half-space has a negative density or modulus: without, every mode is a forward one."""
+
+    @property
+    def has_wall(self) -> bool:
+        """Whether some layer lets through no plane wave but the normal one."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether it is several periods of one cell, so that Bloch waves tell what it lets through."""
+
+    def response(self, kx: np.ndarray, z: np.ndarray | None = None) -> Response:
+        """r and t at the faces, and p at depths z (Z,) inside over the incident p at the near face."""
+
+    def dispersion(self, kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """A function whose zeros in kx are the guided modes, as value and logarithm: value exp(logarithm)."""
+
+    def half_trace(self, kx: np.ndarray, loss: float = 0.0) -> np.ndarray:
+        """cos of the Bloch phase of one period without its own loss, but with `loss`; of a `periodic` slab."""
+
+    def kz_before(self, kx: np.ndarray) -> np.ndarray:
+        """kz of the medium in front [rad/m]."""
+
+    def kz_after(self, kx: np.ndarray) -> np.ndarray:
+        """kz of the medium behind [rad/m]."""
+
+    def admittance_before(self, kx: np.ndarray) -> np.ndarray:
+        """kz/rho_z of the medium in front: w times its admittance along z."""
+
+    def admittance_after(self, kx: np.ndarray) -> np.ndarray:
+        """kz/rho_z of the medium behind."""
+
+    def largest_kx(self, behind: bool) -> float:
+        """The largest kx of waves that propagate in front, or `behind`, 0 if there are none; of one frequency [rad/m]."""
+
+    def without_slab(self) -> SampledSlab:
+        """The medium in front alone."""
+
+    def stacked(self) -> SampledSlab:
+        """One frequency as an array of one."""
+
+    def perturbed(self, shift: float) -> SampledSlab:
+        """Its frequency and layers moved by `shift`, to see what rounding does to a field."""
+
+    def rounded(self) -> SampledSlab:
+        """Its layers moved in their last bits, to see what rounding does to a mode."""
+
+    def with_loss(self, loss: float) -> SampledSlab:
+        """More loss in every layer and half-space: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
+
+    def up_to_wall(self) -> SampledSlab:
+        """It without what lies behind its first wall, at one frequency."""
+
+    def take(self, i: Any) -> SampledSlab:
+        """Frequency i (an index: `k0` and branch points become numbers), or frequencies i (an array)."""
+
+
+class FluidSlab(NamedTuple):
+    """Layered fluids between two fluids: a `SampledSlab`."""
+
+    segments: list[SegmentValues]
+    before: FluidValues
+    after: FluidValues
+    omega: np.ndarray  # (F, 1)
+    thickness: float
+    k0: Any  # float for one frequency, (F,) for several
+    branch_points: tuple[Any, ...]
+
+    @property
+    def faces(self) -> np.ndarray:
+        """Depths of the faces and of those between segments [m]."""
+        return np.cumsum([0.0, *(values.periods * values.layers.thickness.sum() for values in self.segments)])
+
+    @property
+    def nearest_branch(self) -> Any:
+        """Distance of the nearest branch point from kx = 0."""
+        return np.min(np.abs(np.stack(self.branch_points)), axis=0)
+
+    @property
+    def last_branch(self) -> Any:
+        """The largest |Re kx| of a branch point."""
+        return np.max(np.abs(np.real(np.stack(self.branch_points))), axis=0)
+
+    @property
+    def real_branches(self) -> list[float]:
+        """|Re kx| of the branch points beside the real axis."""
+        return [abs(b.real) for b in self.branch_points if abs(b.real) > abs(b.imag)]
+
+    @property
+    def backward_branch(self) -> complex | None:
+        """The branch point of a half-space of backward waves."""
+        return next((-b for b in self.branch_points if -b.real > b.imag), None)
+
+    @property
+    def lossless(self) -> bool:
+        """Whether no property has an imaginary part."""
+        values = [v for seg in self.segments for v in (seg.layers.mass, seg.layers.compliance, seg.layers.mobility)]
+        return not any(np.any(v.imag) for v in (*values, *self.before, *self.after))
+
+    @property
+    def may_guide_backward(self) -> bool:
+        """Whether some density or modulus is negative."""
+        layers = (v for seg in self.segments for v in (seg.layers.mass, seg.layers.mobility, seg.layers.compliance))
+        return any(bool(np.any(v.real < 0)) for v in (*layers, *self.before, *self.after))
+
+    @property
+    def has_wall(self) -> bool:
+        """Whether some layer's density is 0."""
+        return any(bool(np.any(values.layers.vanishing)) for values in self.segments)
+
+    @property
+    def periodic(self) -> bool:
+        """Whether it is several periods of one cell."""
+        return len(self.segments) == 1 and self.segments[0].periods > 1 and not self.has_wall
+
+    def response(self, kx: np.ndarray, z: np.ndarray | None = None) -> Response:
+        """See `response.slab.solve`."""
+        return solve(self.segments, self.before, self.after, self.omega, kx, z)
+
+    def dispersion(self, kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """See `response.slab.dispersion`."""
+        return dispersion(self.segments, self.before, self.after, self.omega, kx)
+
+    def half_trace(self, kx: np.ndarray, loss: float = 0.0) -> np.ndarray:
+        """Half the trace of one period's matrix."""
+        layers = self.segments[0].layers
+        mass, compliance, mobility = (v.real for v in (layers.mass, layers.compliance, layers.mobility))
+        layers = layers._replace(
+            mass=mass + 1j * loss * np.abs(mass),
+            compliance=compliance + 1j * loss * np.abs(compliance),
+            mobility=mobility - 1j * loss * np.abs(mobility),
+        )
+        m = cell_matrix(layers, self.omega, np.atleast_2d(kx) + 0j)
+        trace = m.a + (m.e11 + m.e22) / 2
+        with np.errstate(over="ignore"):
+            return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))
+
+    def kz_before(self, kx: np.ndarray) -> np.ndarray:
+        """kz in front."""
+        return outgoing_kz(kx, self.omega, *(v[:, None] for v in self.before))
+
+    def kz_after(self, kx: np.ndarray) -> np.ndarray:
+        """kz behind."""
+        return outgoing_kz(kx, self.omega, *(v[:, None] for v in self.after))
+
+    def admittance_before(self, kx: np.ndarray) -> np.ndarray:
+        """kz/rho_z in front."""
+        return self.kz_before(kx) / self.before.rho_z[:, None]
+
+    def admittance_after(self, kx: np.ndarray) -> np.ndarray:
+        """kz/rho_z behind."""
+        return self.kz_after(kx) / self.after.rho_z[:, None]
+
+    def largest_kx(self, behind: bool) -> float:
+        """w sqrt(rho_x/K), if it is finite."""
+        fluid = self.after if behind else self.before
+        k = complex(self.omega[0, 0] * np.sqrt(fluid.rho_x[0] / fluid.bulk_modulus[0]))
+        return abs(k.real) if np.isfinite(k) else 0.0
+
+    def without_slab(self) -> FluidSlab:
+        """No layers, and the same medium behind."""
+        return self._replace(segments=[], after=self.before, branch_points=(self.k0 + 0j,), thickness=0.0)
+
+    def stacked(self) -> FluidSlab:
+        """k0 and branch points as arrays (1,)."""
+        return self._replace(k0=np.array([self.k0]), branch_points=tuple(np.array([b]) for b in self.branch_points))
+
+    def perturbed(self, shift: float) -> FluidSlab:
+        """omega (1 - shift), and layer masses moved by +-shift/8: rounding shows even where densities of a cell cancel."""
+        if not shift:
+            return self
+        segments = []
+        for values in self.segments:
+            mass = values.layers.mass
+            uneven = 1 + shift / 8 * np.where(np.sin(2.4 * np.arange(mass.shape[0])) > 0, 1, -1)[:, None]
+            segments.append(values._replace(layers=values.layers._replace(mass=mass * uneven)))
+        return self._replace(omega=self.omega * (1 - shift), segments=segments)
+
+    def rounded(self) -> FluidSlab:
+        """See `response.layer.perturbed`."""
+        return self._replace(segments=[perturbed(segment, SHIFT) for segment in self.segments])
+
+    def with_loss(self, loss: float) -> FluidSlab:
+        """Every density and modulus with `loss` more."""
+        if not loss:
+            return self
+        segments = []
+        for values in self.segments:
+            layers = values.layers
+            lossy = layers._replace(
+                mass=layers.mass + 1j * loss * np.abs(layers.mass),
+                compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
+                mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
+            )
+            segments.append(values._replace(layers=lossy))
+        before, after = (
+            FluidValues(
+                f.rho_z + 1j * loss * np.abs(f.rho_z),
+                f.rho_x + 1j * loss * np.where(np.isfinite(f.rho_x), np.abs(f.rho_x), 0.0),
+                1 / (1 / f.bulk_modulus + 1j * loss * np.abs(1 / f.bulk_modulus)),
+            )
+            for f in (self.before, self.after)
+        )
+        return self._replace(segments=segments, before=before, after=after)
+
+    def up_to_wall(self) -> FluidSlab:
+        """It without what lies behind its first layer of density 0, which no plane wave off the normal passes."""
+        for i, (layers, _) in enumerate(self.segments):
+            walls = np.flatnonzero(np.any(layers.vanishing, axis=1))
+            if walls.size:
+                kept = LayerValues(*(v[: walls[0] + 1] for v in layers))
+                return self._replace(segments=[*self.segments[:i], SegmentValues(kept, 1)])
+        return self
+
+    def take(self, i: Any) -> FluidSlab:
+        """Frequency i, or frequencies i."""
+        rows = np.atleast_1d(i)
+        segments = [seg._replace(layers=at_frequencies(seg.layers, rows)) for seg in self.segments]
+        before, after = (FluidValues(*(v[rows] for v in f)) for f in (self.before, self.after))
+        k0, branches = self.k0[rows], [b[rows] for b in self.branch_points]
+        if np.ndim(i) == 0:
+            k0, branches = float(k0[0]), [complex(b[0]) for b in branches]
+        return FluidSlab(segments, before, after, self.omega[rows], self.thickness, k0, tuple(branches))
+
+
+def sample(slab: Slab, frequency: float, backward: bool = False) -> FluidSlab:
+    """A slab at one frequency; refuses half-spaces in which a question has no answer: see `sample_all`."""
+    s = sample_all(slab, np.array([frequency]), backward)
+    return s._replace(k0=float(s.k0[0]), branch_points=tuple(complex(b[0]) for b in s.branch_points))
+
+
+def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> FluidSlab:
+    """A slab at frequencies (F,); `backward` says whether the half-space behind may carry backward waves."""
+    branches = []
+    for name, fluid in (("before", slab.before), ("after", slab.after)):
+        k = fluid.wavenumber(frequency)
+        # waves that decay within a wavelength run neither way: any contour passes their branch point alike
+        behind = (-k.real > k.imag) & (not backward)
+        bad = (k.real <= 0) | np.isinf(k) if name == "before" else behind
+        if np.any(bad):
+            raise ValueError(
+                f"{name}: expected a half-space that carries forward waves at {frequency[bad][0]} Hz, got {fluid!r}"
+            )
+        if np.all(np.isfinite(k)):
+            branches.append(k)
+    return FluidSlab(
+        slab_values(slab, frequency),
+        slab.before.at(frequency),
+        slab.after.at(frequency),
+        2 * np.pi * frequency[:, None],
+        slab.thickness,
+        slab.before.wavenumber(frequency).real,
+        tuple(branches),
+    )
+
+
+def on_the_right(branch: Any) -> Any:
+    """Of the branch points b and -b the one with Re kx >= 0: it lies below the axis for a half-space of backward waves."""
+    return np.where(np.real(branch) < 0, -branch, branch)
