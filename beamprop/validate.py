@@ -215,18 +215,18 @@ def flag(value: Any, name: str) -> bool:
     return bool(value)
 
 
+def flag_or_function(value: Any, name: str) -> Any:
+    """True, False, or something that can be called."""
+    if callable(value) or _is_flag(value):
+        return value
+    raise refuse(name, "True, False or a function", value)
+
+
 def word(value: Any, name: str, *options: str) -> str:
     """One of some words."""
     if not isinstance(value, str) or value not in options:
         *first, last = map(repr, options)
         raise refuse(name, f"{', '.join(first)} or {last}" if first else last, value)
-    return value
-
-
-def function(value: Any, name: str) -> Any:
-    """Something that can be called."""
-    if not callable(value):
-        raise refuse(name, "a function", value)
     return value
 
 

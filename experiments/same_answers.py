@@ -26,7 +26,17 @@ from tqdm import tqdm
 import beamprop as bp
 
 #: Questions of each kind; 300 in all.
-COUNTS = {"field": 110, "periodic": 10, "width": 50, "measures": 30, "scattering": 40, "bloch": 20, "modes": 20, "file": 12, "command": 8}
+COUNTS = {
+    "field": 110,
+    "periodic": 10,
+    "width": 50,
+    "measures": 30,
+    "scattering": 40,
+    "bloch": 20,
+    "modes": 20,
+    "file": 12,
+    "command": 8,
+}
 #: Differences up to this are rounding.
 ROUNDING = 1e-12
 
@@ -36,13 +46,16 @@ def slab_of(rng: np.random.Generator) -> bp.Slab:
     loss = rng.choice([0.0, 1e-3, 0.05])
     kind = rng.integers(4)
     if kind == 0:
-        return bp.Slab(bp.lmmd_cell(0.05 + 1j * loss, 0.025 * (loss > 0)), int(rng.choice([1, 40, 450])))
+        return bp.Slab(bp.lmmd_cell(0.05 + 1j * loss, loss / 2), int(rng.choice([1, 40, 450])))
     if kind == 1:
         fluid = bp.Fluid((rng.uniform(0.3, 4) + 1j * loss) * 1.25, rng.uniform(0.3, 5) * (1 - 1j * loss) * 147061)
         return bp.Slab.uniform(fluid, rng.uniform(0.01, 0.5))
     signs = rng.choice([-1, 1] if kind == 2 else [1], 5)
     layers = [
-        bp.Layer(bp.Fluid((sign * rng.uniform(0.2, 8) + 1j * max(loss, 1e-3)) * 1.25, rng.uniform(0.3, 5) * 147061), rng.uniform(0.002, 0.05))
+        bp.Layer(
+            bp.Fluid((sign * rng.uniform(0.2, 8) + 1j * max(loss, 1e-3)) * 1.25, rng.uniform(0.3, 5) * 147061),
+            rng.uniform(0.002, 0.05),
+        )
         for sign in signs
     ]
     after = bp.Fluid.from_speed(rng.uniform(0.8, 3), rng.uniform(250, 500))
@@ -65,12 +78,18 @@ def beam_of(rng: np.random.Generator) -> Any:
 
 def _field(rng: np.random.Generator, boundary: str = "open") -> xr.Dataset:
     slab, beam = slab_of(rng), beam_of(rng)
-    x = np.linspace(-1, 1, int(rng.choice([7, 65, 512]))) if rng.random() < 0.7 or boundary == "periodic" else np.sort(rng.uniform(-1, 1, 20))
+    x = (
+        np.linspace(-1, 1, int(rng.choice([7, 65, 512])))
+        if rng.random() < 0.7 or boundary == "periodic"
+        else np.sort(rng.uniform(-1, 1, 20))
+    )
     if boundary == "periodic":
         x, beam = np.arange(-256, 256) * 0.02, bp.GaussianBeam(0.4, 20.0, z0=-0.1)
     z = np.sort(rng.uniform(0, slab.thickness + 0.3, int(rng.choice([1, 4, 220], p=[0.4, 0.5, 0.1]))))
     angle = None if rng.random() < 0.85 or not getattr(beam, "entire", True) else np.linspace(-20, 20, 12)
-    return bp.field(slab, beam, rng.uniform(1500, 4000), x, z, angle, boundary=boundary, rtol=float(rng.choice([1e-6, 1e-8, 1e-10])))
+    return bp.field(
+        slab, beam, rng.uniform(1500, 4000), x, z, angle, boundary=boundary, rtol=float(rng.choice([1e-6, 1e-8, 1e-10]))
+    )
 
 
 def _file(rng: np.random.Generator) -> xr.Dataset:
@@ -101,7 +120,9 @@ def _command(number: int) -> xr.Dataset:
         path = Path(folder) / "a.nc"
         code = "from beamprop.cli import main; main()"
         subprocess.run(
-            [sys.executable, "-W", "ignore", "-c", code, *COMMANDS[number], "--output", str(path)], check=True, capture_output=True
+            [sys.executable, "-W", "ignore", "-c", code, *COMMANDS[number], "--output", str(path)],
+            check=True,
+            capture_output=True,
         )
         return bp.load(path).load()
 

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
+from beamprop import progress
 from beamprop.contour import choose as contour_choice
 from beamprop.io import datasets
 
@@ -184,6 +185,25 @@ def test_beam_width_dimensions(frequency, angle):
     for v in ds.data_vars.values():
         assert dict(v.sizes) == sizes(frequency=frequency, angle=angle)
     assert_labelled(ds)
+
+
+def test_progress_has_one_meaning(capsys):
+    """True shows a bar on stderr, for long work alone; False nothing; whatever the question."""
+    questions = (
+        lambda p: bp.field(SLAB, BEAM, F, 0.0, 0.1, progress=p),
+        lambda p: bp.beam_width(SLAB, BEAM, F, progress=p),
+        lambda p: bp.beam_measures(SLAB, BEAM, F, progress=p),
+        lambda p: bp.fem.field(bp.Slab.uniform(bp.AIR, 0.05), BEAM, F, np.zeros(1), np.zeros(1), 2.21, progress=p),
+    )
+    for ask in questions:
+        shown = [ask(p) for p in (True, False, list)]
+        assert shown[0].drop_attrs().equals(shown[1].drop_attrs())
+        with pytest.raises(ValueError, match=r"^progress: expected True, False or a function, got 1"):
+            ask(1)
+    assert capsys.readouterr().err == ""
+    bars = [progress.watched(True, range(3), "work"), progress.watched(False, range(3), "work")]
+    assert [list(bar) for bar in bars] == [[0, 1, 2]] * 2
+    assert type(bars[0]).__name__ == "tqdm"
 
 
 def test_progress_wraps_the_work():

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import warnings
 
+import click
 import numpy as np
 import pytest
 import xarray as xr
@@ -404,7 +405,7 @@ def test_help_lists_the_commands():
     out = good("--help").stdout
     assert good("-h").stdout == out
     for command in COMMANDS:
-        assert f"\n  {command} " in out
+        assert f"\n  {main.get_command(click.Context(main), command).name} " in out
         text = good(command, "--help").stdout
         for option in ("--output", "--plot", "--json", "--quiet", "--eta", "--rho-m"):
             assert option in text
@@ -454,3 +455,27 @@ def test_datasets_of_the_command_are_those_of_the_api(tmp_path):
     """Not the numbers alone: dims, coordinates and attributes too."""
     good("bloch", "--kx-over-k0", "0,0.5", "-o", tmp_path / "a.nc")
     xr.testing.assert_identical(bp.load(tmp_path / "a.nc"), bp.bloch(SLAB.cell, 2500.0, kx_over_k0=[0.0, 0.5]))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("width", "beam_width"), ("spectrum", "scattering"), ("modes", "guided_modes"), ("beam-width", "beam_width")],
+)
+def test_names_are_those_of_python_and_old_ones_stay(old, new):
+    """A command has the name of its question; what was typed before, and hyphens, are taken too."""
+    assert main.get_command(click.Context(main), old) is main.commands[new]
+    assert set(main.commands) == {
+        "beam_measures", "beam_width", "bloch", "compare", "convert", "field", "guided_modes", "scattering",
+    }  # fmt: skip
+
+
+def test_beam_measures():
+    """The same numbers as in Python."""
+    ran = CliRunner().invoke(
+        main, ["beam_measures", *P, "--lossless", "--window", "1", "--frequency", "2400", "--json", "-q"]
+    )
+    assert ran.exit_code == 0, ran.output
+    given = json.loads(ran.stdout)["data_vars"]["power"]["data"]
+    slab = bp.Slab(bp.lmmd_cell(0.05, 0), 20)
+    expected = bp.beam_measures(slab, BEAM, 2400.0, rtol=1e-8, window=1.0).power
+    np.testing.assert_allclose(given, expected, rtol=1e-12)

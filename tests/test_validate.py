@@ -211,8 +211,8 @@ def test_objects():
     ):
         with pytest.raises(ValueError, match=r"^beam: expected a Beam, got "):
             ask()
-    with pytest.raises(ValueError, match=r"^progress: expected a function, got True"):
-        bp.field(SLAB, BEAM, 2500.0, 0.0, 0.1, progress=True)
+    with pytest.raises(ValueError, match=r"^progress: expected True, False or a function, got 'yes'"):
+        bp.field(SLAB, BEAM, 2500.0, 0.0, 0.1, progress="yes")
     with pytest.raises(ValueError, match=r"^ds: expected a Dataset, got 3"):
         bp.provenance(3)
     with pytest.raises(ValueError, match=r"^ax: expected Axes of matplotlib, got 3"):

@@ -12,10 +12,10 @@ from .. import memory, validate
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import measures
+from ..progress import Progress, watched
 from ..response.sampled_slab import sample
 from ..sources.beams import Beam, moved_to_origin
 from . import checks
-from .checks import Progress
 
 SIDES = ("reflected", "transmitted")
 #: Variables that are positions on x.
@@ -28,7 +28,7 @@ def beam_measures(
     frequency: Any,
     angle: Any = None,
     rtol: float = 1e-6,
-    progress: Progress = iter,
+    progress: Progress = False,
     window: float | None = None,
 ) -> xr.Dataset:
     """The reflected beam at the near face and the transmitted beam at the far face, measured.
@@ -76,7 +76,7 @@ def beam_measures(
     AccuracyWarning
         The estimated error of a beam's |p| is above rtol.
     """
-    validate.function(progress, "progress")
+    validate.flag_or_function(progress, "progress")
     validate.instance(slab, Slab, "slab")
     validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
@@ -87,7 +87,8 @@ def beam_measures(
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in measures.Beamlet._fields}
     worst = 0.0
     source, origin = moved_to_origin(beam)
-    for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
+    each = [(i, j) for i in range(flat.size) for j in range(flat_angles.size)]
+    for i, j in watched(progress, each, "beams"):
         s = sample(slab, float(flat[i]))
         for side, (beamlet, error) in enumerate(
             measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)

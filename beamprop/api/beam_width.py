@@ -12,10 +12,10 @@ from .. import memory, validate
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import sections
+from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
 from ..sources.beams import Beam, moved_to_origin
 from . import checks
-from .checks import Progress
 
 
 def beam_width(
@@ -25,7 +25,7 @@ def beam_width(
     angle: Any = None,
     rtol: float = 1e-8,
     air_distance: float | None = None,
-    progress: Progress = iter,
+    progress: Progress = False,
 ) -> xr.Dataset:
     """Widths of a beam: launched, at the near face, behind the slab, and after a distance without the slab.
 
@@ -40,8 +40,8 @@ def beam_width(
         Asked error of the fields over their largest |p|.
     air_distance : float, m, optional
         Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
-    progress : function
-        Wraps the list of blocks that is worked through (``tqdm.tqdm``, say).
+    progress : bool or function
+        True: a bar on stderr for work of more than a second. A function wraps the list of blocks that is worked through.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def beam_width(
     AccuracyWarning
         The estimated error of |p| in one of the planes is above rtol.
     """
-    validate.function(progress, "progress")
+    validate.flag_or_function(progress, "progress")
     validate.instance(slab, Slab, "slab")
     validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
@@ -76,7 +76,7 @@ def beam_width(
         for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
         for j in range(flat_angles.size)
     ]
-    for rows, j in progress(work):
+    for rows, j in watched(progress, work, "widths"):
         s = sample_all(slab, flat[rows])
         found, met, errors = sections.rows(s, source.at_angle(float(flat_angles[j])), rtol, air_distance)
         most = np.maximum(most, met.max(axis=1).astype(int))

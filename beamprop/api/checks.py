@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,6 @@ import numpy as np
 from .. import memory, validate
 from ..media.structures import Fluid, Slab
 from ..sources.beams import Beam, sin_degrees
-
-#: Wraps the items of a loop, to watch it.
-Progress = Callable[[Iterable[Any]], Iterable[Any]]
 
 
 class AccuracyWarning(UserWarning):

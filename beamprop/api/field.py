@@ -10,9 +10,9 @@ import xarray as xr
 from .. import memory, validate
 from ..fields.question import fill, prepare
 from ..media.structures import Slab
+from ..progress import Progress, watched
 from ..sources.beams import Beam
 from . import checks
-from .checks import Progress
 from .field_question import checked_question, labelled, largest
 
 
@@ -26,7 +26,7 @@ def field(
     boundary: str = "open",
     period: float | None = None,
     rtol: float = 1e-8,
-    progress: Progress = iter,
+    progress: Progress = False,
 ) -> xr.Dataset:
     """Total pressure of a beam in front of, inside and behind a slab.
 
@@ -46,8 +46,8 @@ def field(
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
         Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
-    progress : function
-        Wraps the list of frequencies that is worked through (``tqdm.tqdm``, say).
+    progress : bool or function
+        True: a bar on stderr for work of more than a second. A function wraps the list of frequencies that is worked through.
 
     Returns
     -------
@@ -66,11 +66,11 @@ def field(
     ValueError
         Names the argument, what was expected and what came; also for what does not fit into memory.
     """
-    validate.function(progress, "progress")
+    validate.flag_or_function(progress, "progress")
     question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
     memory.check_field(question.shape)
     p, errors = np.empty(question.shape, complex), np.empty(question.shape[:2])
-    for i, _ in enumerate(progress(question.frequency)):
+    for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
         errors[i] = fill(prepare(question, i), slice(None), slice(None), p[i])
     checks.warn_if_inaccurate(largest(errors), question.rtol)
     return labelled(labels, errors, p)

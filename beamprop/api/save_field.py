@@ -15,9 +15,9 @@ from ..fields.question import fill, prepare
 from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
+from ..progress import Progress, watched
 from ..sources.beams import Beam
 from . import checks
-from .checks import Progress
 from .field_question import checked_question, labelled, largest
 
 #: The largest chunk of a file [bytes].
@@ -38,7 +38,7 @@ def save_field(
     period: float | None = None,
     rtol: float = 1e-8,
     memory: float = 2**28,
-    progress: Progress = iter,
+    progress: Progress = False,
 ) -> xr.Dataset:
     """A field map in a file, written in blocks: as `save` would write the answer of `field`, without ever holding it.
 
@@ -51,8 +51,8 @@ def save_field(
     memory : float, bytes
         Of the largest block of p that is held at a time: one row along x at least. What a block is made from takes
         some tens of MB more.
-    progress : function
-        Wraps the list of blocks that is worked through (``tqdm.tqdm``, say).
+    progress : bool or function
+        True: a bar on stderr for work of more than a second. A function wraps the list of blocks that is worked through.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def save_field(
         The system refused a write. Of a netCDF file the space is reserved before the work: a full disk is found then.
     """
     path = validate.as_path(path)
-    validate.function(progress, "progress")
+    validate.flag_or_function(progress, "progress")
     check_target(path)
     question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
     shape, dims, pick = question.shape, labels.dims, labels.pick
@@ -89,7 +89,7 @@ def save_field(
 
     def blocks() -> Iterator[tuple[tuple[Any, ...], np.ndarray]]:
         chosen = -1
-        for i, angles, planes in progress(work):
+        for i, angles, planes in watched(progress, work, "blocks"):
             if i != chosen:
                 prepared, chosen = prepare(question, i), i
             # a block at the end may be smaller

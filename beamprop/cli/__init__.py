@@ -12,7 +12,14 @@ from .._version import __version__
 from . import files, questions
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+class _Commands(click.Group):
+    """Commands, also under the names they had before, and with hyphens."""
+
+    def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
+        return super().get_command(ctx, questions.ALIASES.get(name, name.replace("-", "_")))
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(__version__, prog_name="beamprop")
 def main() -> None:
     """Acoustic beams through exactly solved layered slabs, in open space.

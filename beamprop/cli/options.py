@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -133,11 +132,14 @@ BEAM = all_of(
     option("--form", default="launch", kind=click.Choice(["launch", "rotated"]), text="Kind of oblique beam."),
     option("--rtol", default=1e-8, text="Asked relative error."),
 )
-OUTPUT = all_of(
+OUTPUT_WITHOUT_PLOT = all_of(
     click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the dataset to this .nc or .zarr."),
-    click.option("--plot", "-p", type=Target(".png", ".pdf"), help="Draw it into this .png or .pdf."),
     click.option("--json", "as_json", is_flag=True, help="Print the dataset as JSON."),
     click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json."),
+)
+OUTPUT = all_of(
+    click.option("--plot", "-p", type=Target(".png", ".pdf"), help="Draw it into this .png or .pdf."),
+    OUTPUT_WITHOUT_PLOT,
 )
 
 
@@ -180,14 +182,3 @@ def beam_of(o: dict[str, Any], z0: float = 0.0) -> Any:
     from ..sources.beams import GaussianBeam
 
     return GaussianBeam(o["fwhm"], 0.0, o["x0"], z0, o["width_of"], o["form"])
-
-
-def progress(quiet: bool, what: str) -> Callable[[Iterable[Any]], Iterable[Any]]:
-    """A bar on stderr for work that takes more than a second."""
-
-    def wrap(items: Iterable[Any]) -> Iterable[Any]:
-        from tqdm import tqdm
-
-        return tqdm(items, desc=what, delay=1.0, file=sys.stderr, disable=quiet, leave=False)
-
-    return wrap

@@ -1,4 +1,4 @@
-"""The questions: field, width, spectrum, bloch, modes."""
+"""The questions, under the names that they have in Python."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .answer import answer, table
-from .options import BEAM, CELL, OUTPUT, SLAB, Axis, Target, beam_of, cell_of, option, progress, slab_of, spaced
+from .options import BEAM, CELL, OUTPUT, OUTPUT_WITHOUT_PLOT, SLAB, Axis, beam_of, cell_of, option, slab_of, spaced
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-@click.command()
+@click.command(name="beam_width")
 @SLAB
 @BEAM
 @option("--frequency", default="2000:3000:101", kind=Axis(), text="[Hz], an axis.")
 @option("--z0", default=0.0, text="Launch plane, at or in front of the near face at 0 [m].")
 @click.option("--air-distance", type=float, help="Of the comparison without the slab [m]; two wavelengths by default.")
 @OUTPUT
-def width(**o: Any) -> None:
+def beam_width(**o: Any) -> None:
     """Beam widths against frequency or angle (the paper's Fig. 6)."""
 
     def ask() -> xr.Dataset:
-        from ..api.beam_width import beam_width
+        from ..api.beam_width import beam_width as question
 
-        return beam_width(
+        return question(
             slab_of(o),
             beam_of(o, o["z0"]),
             o["frequency"],
             o["angle"],
             o["rtol"],
             o["air_distance"],
-            progress=progress(o["quiet"], "widths"),
+            progress=not o["quiet"],
         )
 
     def draw(ds: xr.Dataset) -> Any:
@@ -49,6 +49,28 @@ def width(**o: Any) -> None:
 def _needs_axis(o: dict[str, Any], *names: str) -> None:
     if o["plot"] and not any(isinstance(o[n], list) for n in names):
         raise click.UsageError(f"--plot: expected an axis for {' or '.join('--' + n for n in names)}, got one value")
+
+
+@click.command(name="beam_measures")
+@SLAB
+@BEAM
+@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
+@option("--z0", default=0.0, text="Launch plane, at or in front of the near face at 0 [m].")
+@click.option("--window", type=float, help="Half-width of the window [m]; as wide as the beam by default.")
+@OUTPUT_WITHOUT_PLOT
+def beam_measures(**o: Any) -> None:
+    """Reflected and transmitted beam: widths by three definitions, place, shift, power, divergence."""
+
+    def ask() -> xr.Dataset:
+        from ..api.beam_measures import beam_measures as question
+
+        beam = beam_of(o, o["z0"])
+        return question(
+            slab_of(o), beam, o["frequency"], o["angle"], o["rtol"], window=o["window"], progress=not o["quiet"]
+        )
+
+    names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
+    answer(o | {"plot": None}, ask, None, lambda ds: table(ds, names))
 
 
 @click.command()
@@ -89,12 +111,10 @@ def field(**o: Any) -> None:
             o["rtol"],
         )
         if o["memory"] is None:
-            return field(*question, progress=progress(o["quiet"], "fields"))
+            return field(*question, progress=not o["quiet"])
         from ..api.save_field import save_field
 
-        return save_field(
-            o["output"], *question, memory=o["memory"] * 2**20, progress=progress(o["quiet"], "blocks of the field")
-        )
+        return save_field(o["output"], *question, memory=o["memory"] * 2**20, progress=not o["quiet"])
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -133,16 +153,16 @@ def _field_summary(ds: xr.Dataset) -> str:
 )
 @click.option("--log", is_flag=True, help="Draw on a logarithmic scale.")
 @OUTPUT
-def spectrum(**o: Any) -> None:
+def scattering(**o: Any) -> None:
     """Plane-wave reflection and transmission against kx or angle (the paper's Figs. 2 and 3)."""
     axes = {n: o[n] for n in ("kx_over_k0", "kx", "angle") if o[n] is not None} or {
         "kx_over_k0": spaced(0.0, 5.0, 1001)
     }
 
     def ask() -> xr.Dataset:
-        from ..api.scattering import scattering
+        from ..api.scattering import scattering as question
 
-        return scattering(slab_of(o), o["frequency"], **axes)
+        return question(slab_of(o), o["frequency"], **axes)
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -182,21 +202,19 @@ def bloch(**o: Any) -> None:
     answer(o, ask, draw, summary)
 
 
-@click.command()
+@click.command(name="guided_modes")
 @SLAB
 @option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
 @option("--kx-over-k0-max", default=10.0, text="Search up to this Re kx over k0.")
 @option("--strip-over-k0", default=0.5, text="Search up to this |Im kx| over k0.")
-@click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the dataset to this .nc or .zarr.")
-@click.option("--json", "as_json", is_flag=True, help="Print the dataset as JSON.")
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json.")
-def modes(**o: Any) -> None:
+@OUTPUT_WITHOUT_PLOT
+def guided_modes(**o: Any) -> None:
     """The modes that the slab guides, with the direction of their energy."""
 
     def ask() -> xr.Dataset:
-        from ..api.guided_modes import guided_modes
+        from ..api.guided_modes import guided_modes as question
 
-        return guided_modes(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
+        return question(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
 
     def summary(ds: xr.Dataset) -> str:
         if ds.sizes["mode"] == 0:
@@ -207,4 +225,6 @@ def modes(**o: Any) -> None:
     answer(o | {"plot": None}, ask, None, summary)
 
 
-COMMANDS = (field, width, spectrum, bloch, modes)
+COMMANDS = (field, beam_width, beam_measures, scattering, bloch, guided_modes)
+#: Names that commands had before they had those of Python.
+ALIASES = {"width": "beam_width", "spectrum": "scattering", "modes": "guided_modes"}

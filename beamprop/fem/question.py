@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 import time
 import warnings
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import validate
 from ..io import datasets
 from ..media.structures import Slab
+from ..progress import Progress, Steps
 from ..sources.beams import Beam
 from . import boundary, solvers, strip
 from .task import Plan, Task, make_task, predict, wavenumber
@@ -177,7 +178,7 @@ def field(
     elements_x: int | None = None,
     method: str = "superelement",
     memory_limit: float = 4e9,
-    progress: bool = False,
+    progress: Progress = False,
     layer_rows: int = 1,
 ) -> xr.Dataset:
     """The sound field of a beam and its copies every `period`, from a full-wave finite-element solve.
@@ -210,8 +211,8 @@ def field(
         "sparse" factors the global matrix: the choice for a slab of many different layers. Both solve the
         same equations.
     memory_limit : float, bytes
-    progress : bool
-        Show a bar.
+    progress : bool or function
+        True: a bar on stderr for work of more than a second. A function wraps the list of steps that is worked through.
     layer_rows : int
         Rows of elements in a layer, at least. A layer thicker than the size above over its own wavelength
         along z is divided further anyway; thin layers need a second row for studies of convergence only.
@@ -244,6 +245,7 @@ def field(
     they bring.
     """
     began = time.perf_counter()
+    validate.flag_or_function(progress, "progress")
     x, z = validate.positions(x, "x"), validate.positions(z, "z")
     if angle is not None and isinstance(beam, Beam):
         beam = beam.at_angle(validate.angle(angle))
@@ -253,8 +255,9 @@ def field(
     expected = predict(task)
     _check_memory(expected, validate.as_number(memory_limit, "memory_limit", positive=True))
     _check_window(task)
-    with _Bar(task, progress) as bar:
-        mesh, found, ends, solution, residual = _solve(task, bar.step)
+    steps = Steps(progress, solvers.step_count(task.segments, task.method), "finite elements")
+    mesh, found, ends, solution, residual = _solve(task, steps.step)
+    steps.close()
     _warn_grazing(task, found)
     _warn_unresolved(task, found.kx.size // 2)
     C = ends.transform
@@ -286,25 +289,3 @@ def field(
         seconds=time.perf_counter() - began,
     )
     return ds
-
-
-class _Bar:
-    """A progress bar over the solver's steps, or nothing."""
-
-    def __init__(self, task: Task, shown: bool) -> None:
-        self._bar: Any = None
-        if shown:
-            from tqdm import tqdm
-
-            self._bar = tqdm(total=solvers.step_count(task.segments, task.method), desc="finite elements", leave=False)
-
-    def step(self, count: int) -> None:
-        if self._bar is not None:
-            self._bar.update(count)
-
-    def __enter__(self) -> _Bar:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()

@@ -137,7 +137,7 @@ TERMS = [
     ),
     Term(
         "rounding of long phases", "contour.error_estimate", "_difference",
-        "return worst + spectral.EPS * (4 + checks.k0 * way)", "return worst + 0 * way", (*_some("very wide beams", 20), FAR),
+        "return worst + paths.EPS * (4 + checks.k0 * way)", "return worst + 0 * way", (*_some("very wide beams", 20), FAR),
     ),
     Term(
         "second response moved in its last bits", "contour.error_estimate", "sampled", "SHIFT if moved else 0.0", "0.0",
