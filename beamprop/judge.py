@@ -331,13 +331,11 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
     The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
     (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
     """
-    if not hasattr(fan.beam, "spectral_rounding"):
-        return np.zeros(one.h.shape[0])
-    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), []
-    ends = {float(fan.angles.min()), float(fan.angles.max())}
-    for beam in (fan.at(angle) for angle in ends):
-        for k in (one.line.k, -one.line.k):
-            coherent, white = beam.spectral_rounding(k, k0)
+    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), [np.zeros(one.h.shape[0])]
+    for angle in {float(fan.angles.min()), float(fan.angles.max())}:
+        rounding = getattr(fan.at(angle), "spectral_rounding", None)
+        for k in (one.line.k, -one.line.k) if rounding else ():
+            coherent, white = rounding(k, k0)
             with np.errstate(over="ignore", invalid="ignore"):
                 bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
     return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # the largest of many positions
