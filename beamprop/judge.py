@@ -9,7 +9,7 @@ asked: a beam is looked for where it lands, too.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -333,7 +333,7 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
     """
     h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), [np.zeros(one.h.shape[0])]
     for angle in {float(fan.angles.min()), float(fan.angles.max())}:
-        rounding = getattr(fan.at(angle), "spectral_rounding", None)
+        rounding: Any = getattr(fan.at(angle), "spectral_rounding", None)
         for k in (one.line.k, -one.line.k) if rounding else ():
             coherent, white = rounding(k, k0)
             with np.errstate(over="ignore", invalid="ignore"):
