@@ -36,7 +36,7 @@ def with_wider_look(s: Scene, checks: Checks, reach: Reach, plan: BentPlan, foun
     if two.nodes > MOST_WAVES:
         return checks
     asked = checks.fan.asked
-    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    some = checks.fan.spread(5)
     beams = Fan(checks.fan.beam, asked[some])
     x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
     peaks = []

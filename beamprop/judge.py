@@ -96,7 +96,7 @@ def darkest_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray) -> np
     """
     order = np.sort(z)
     found: list[float] = []
-    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 3).round().astype(int))]
+    some = fan.spread(3)
     for angle in fan.asked[some]:
         darker = _darkness(_strengths(fan.at(float(angle)), k0, transfer, order), order, np.pi / k0)
         picked: list[float] = []
@@ -127,7 +127,7 @@ def with_dark_planes(checks: Checks) -> Checks:
     fan, k0, transfer, z = checks.fan, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
     near = np.concatenate([z, np.maximum(z - step, fan.beam.z0), z + step])
-    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 9).round().astype(int))]
+    some = fan.spread(9)
     dark = []
     for angle in fan.asked[some]:
         here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
@@ -166,7 +166,7 @@ def survey(s: Scene, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray,
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     asked = fan.asked
-    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 3).round().astype(int))]
+    some = fan.spread(3)
     rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
@@ -273,7 +273,7 @@ def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, 
     asked = checks.fan.asked
     if checks.fan.mix is None or asked.size <= JUDGED:
         return _difference(checks, one, two)
-    some = np.argsort(asked)[np.linspace(0, asked.size - 1, JUDGED).round().astype(int)]
+    some = checks.fan.spread(JUDGED)
     dark = None if checks.dark is None else checks.dark[some]
     part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=dark)
     error, edge = _difference(part, one, two)
@@ -284,11 +284,11 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     fan = checks.fan
     (right1, left1), (right2, left2) = one.amplitudes, two.amplitudes
     x = checks.x - fan.beam.centre
-    # of asked angles that are mixed some are summed themselves too, in the same product
+    # some of the angles that are mixed are summed by themselves too, in the same product: the extremes, where mixing errs most
     some = np.empty(0, int)
     right, left = right1, left1
     if fan.mix is not None:
-        some = np.unique(np.linspace(0, fan.asked.size - 1, 5).round().astype(int))
+        some = fan.spread(5)
         pairs = zip(one.amplitudes, amplitudes(checks.k0, Fan(fan.beam, fan.asked[some]), one.line), strict=True)
         right, left = (np.concatenate(pair) for pair in pairs)
     own = np.asarray(spectral.direct_sum(one.line, one.h, right, left, x))
@@ -312,9 +312,9 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
             edge, cut, first_edge = (v if mix is None else mix @ v for v in (edge, cut, first_edge))
             error += cut / scale
         if fan.mix is not None:
-            error += fan.tolerance + 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
+            error += 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
-    # both lines round the phases k x and kz z alike
+    # both lines share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase
     way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
     ends = np.max(np.where(seen, np.maximum(edge, first_edge) / scale, 0.0))
     return worst + spectral.EPS * (4 + checks.k0 * way), float(ends)
