@@ -60,13 +60,13 @@ STEPPED, LAUNCHED = "stepped", "as launched"
 
 
 def on_the_axis(case: Case) -> Truth:
-    """The truth of a question without guided modes, by panels on the real axis, graded to its branch points and ends."""
+    """The truth of a question without guided modes, by panels on the real axis, graded to 0, its branch points and ends."""
     m = Medium(case.slab, case.frequency)
     source = Source(case.beam, m.k0)
     end, fields = source.band(1e-17), []
     for count in (300, 450):
         steps = end * np.geomspace(1e-13, 1, 200)
-        near = [b + side * steps for b in m.branches() for side in (-1, 1)]
+        near = [b + side * steps for b in (0.0, *m.branches()) for side in (-1, 1)]
         edges = np.concatenate([np.linspace(0, end, count), *near])
         k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
         x = case.x - case.beam.centre
@@ -145,6 +145,18 @@ MIXED = Among(
 )
 
 
+#: A tilted profile behind a layer of next to no density, which lets only such plane waves through at which the samples cancel to 1e-7.
+_AT = np.linspace(-1.5, 1.5, 201)
+CANCELLED = _built(
+    bp.Slab.uniform(bp.Fluid(1e-6, 1.47e5), 0.1),
+    bp.Profile(_AT, np.exp(-((_AT / 0.3) ** 2)), -0.05, 70.0),
+    np.linspace(-0.5, 0.5, 21),
+    [0.1],
+    1e-12,
+    2000.0,
+)._replace(kind=STEPPED)
+
+
 def _tilted_plateaus() -> Iterator[Case]:
     """Flat-topped profiles, 5000 to 7000 wavelengths wide, with a steep tilt, on their launch plane in cold air.
 
@@ -168,7 +180,10 @@ def _some(kind: str, count: int = 12) -> tuple[int, ...]:
 TERMS = [
     Term(
         "difference of two contours", "judge", "_difference",
-        "np.max(np.abs(a - b), axis=2) / scale", "0 * np.max(np.abs(a - b), axis=2) / scale", tuple(range(15)),
+        "np.max(np.abs(a - b), axis=2)", "0 * np.max(np.abs(a - b), axis=2)", tuple(range(15)),
+    ),
+    Term(
+        "rounding of a profile's samples", "judge", "_difference", "+ source) / scale", "+ 0 * source) / scale", (CANCELLED,),
     ),
     Term(
         "what lies beyond the band", "judge", "_beyond",
