@@ -137,6 +137,34 @@ def test_planes_at_nodes_in_front_of_a_soft_wall(widths):
     assert not warned
 
 
+@pytest.mark.parametrize("rtol", [1e-3, 1e-5, 1e-7])
+@pytest.mark.parametrize("wall", ["soft", "hard"])
+def test_nodes_between_the_planes_that_stand_for_all(wall, rtol):
+    """A plane every quarter wavelength: every second one is a node, and an even choice of a few takes antinodes alone.
+
+    Errors are over the largest |p| of each plane, so that the nodes decide.
+    """
+    hard = (1e9 * RHO, 1e9 * BULK, 0.1)
+    z = -LAM / 4 * np.arange(24 + (wall == "soft"), -1 + (wall == "soft"), -1)
+    beam = bp.GaussianBeam(30 * LAM, 0, 0, z[0] - 0.02 * LAM)
+    x, wide = beam.fwhm * np.linspace(-1, 1, 41), beam.fwhm * np.linspace(-4, 4, 201)
+    k, w = sided.contour([(K0, 1)], 20.0, 1 / beam.fwhm)
+    if wall == "hard":
+        h = sided.response([hard], AIR, k, z, beam.z0)
+    else:
+        kz = np.sqrt(K0**2 - k**2)
+        h = np.array([2j * np.sin(kz * depth) * np.exp(-1j * kz * beam.z0) for depth in z])
+    spectrum = sided.gaussian(beam.fwhm)
+    truth = sided.summed(k, w, h, spectrum, x)
+    largest = np.abs(sided.summed(k, w, h, spectrum, wide)).max(axis=1)
+    assert largest[1::2].max() < 1e-2 * largest[::2].min()
+    ds, warned = asked(slab_of([hard if wall == "hard" else (0.0, BULK, 0.1)]), beam, F, x, z, rtol=rtol)
+    error = (np.abs(ds.p.values - truth).max(axis=1) / largest).max()
+    assert error < rtol
+    assert error < 3 * float(ds.error_estimate)
+    assert not warned
+
+
 # --- behind a quarter-wave mirror -------------------------------------------------------------------------
 
 
