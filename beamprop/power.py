@@ -45,6 +45,11 @@ class _Nodes(NamedTuple):
     alpha: np.ndarray  #: [rad]
     slope: np.ndarray  #: dkx/du
 
+    @property
+    def fine(self) -> np.ndarray:
+        """Which of all nodes belong to the finer rule, (P (FINE + COARSE),)."""
+        return np.tile(np.arange(FINE + COARSE) < FINE, self.kx.shape[0])
+
 
 class _Sums(NamedTuple):
     """Sums on panels."""
@@ -66,13 +71,14 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     start = np.add.outer(np.arange(edges.size - 1), even[:-1]).ravel()
     stop = np.add.outer(np.arange(edges.size - 1), even[1:]).ravel()
 
-    def sums(start: np.ndarray, stop: np.ndarray, about: float) -> _Sums:
+    def values(start: np.ndarray, stop: np.ndarray) -> tuple[_Nodes, np.ndarray, np.ndarray, np.ndarray]:
         nodes = _nodes(k, edges, start, stop)
-        return _summed(density(nodes.kx.ravel()), moved(nodes.kx.ravel()), nodes, stop - start, about)
+        return nodes, density(nodes.kx.ravel()), moved(nodes.kx.ravel()[nodes.fine]), stop - start
 
-    first_look = sums(start, stop, 0.0).moments.sum(axis=1)
+    known = values(start, stop)
+    first_look = _summed(*known, 0.0).moments.sum(axis=1)
     about = float(first_look[1] / first_look[0]) if first_look[0] > 0 else 0.0
-    found = sums(start, stop, about)
+    found = _summed(*known, about)
     while start.size < MOST_PANELS:
         allowed = max(SHARE * rtol, LEAST) * found.moments[0].sum() / math.sqrt(start.size)
         split = found.apart > np.maximum(allowed, np.abs(found.rounding))
@@ -80,7 +86,7 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
             break
         middle = (start + stop)[split] / 2
         halves = np.concatenate([start[split], middle]), np.concatenate([middle, stop[split]])
-        more = sums(*halves, about)
+        more = _summed(*values(*halves), about)
         start, stop = (np.concatenate([old[~split], new]) for old, new in zip((start, stop), halves, strict=True))
         found = _Sums(*(np.concatenate([old[..., ~split], new], -1) for old, new in zip(found, more, strict=True)))
     total, first, second = found.moments.sum(axis=1)
@@ -112,8 +118,8 @@ def _rule(count: int) -> tuple[np.ndarray, np.ndarray]:
     return g, v
 
 
-def _summed(plain: np.ndarray, moved: np.ndarray, nodes: _Nodes, width: np.ndarray, about: float) -> _Sums:
-    """Sums of densities (2, nodes), plain and moved in their last bits."""
+def _summed(nodes: _Nodes, plain: np.ndarray, moved: np.ndarray, width: np.ndarray, about: float) -> _Sums:
+    """Sums of densities, plain at all nodes and moved in their last bits at those of the finer rule, (2, n)."""
     right, left = plain.reshape(2, *nodes.kx.shape) * nodes.slope
     angle = np.degrees(nodes.alpha)
     off, across = angle - about, -angle - about
@@ -121,5 +127,5 @@ def _summed(plain: np.ndarray, moved: np.ndarray, nodes: _Nodes, width: np.ndarr
     v, half = _rule(FINE)[1], width / 2
     moments = fine[..., :FINE] @ v * half
     coarse = (right + left)[:, FINE:] @ _rule(COARSE)[1] * half
-    changed = (moved.sum(axis=0).reshape(nodes.kx.shape) * nodes.slope)[:, :FINE] @ v * half
+    changed = (moved.sum(axis=0).reshape(-1, FINE) * nodes.slope[:, :FINE]) @ v * half
     return _Sums(moments, np.abs(moments[0] - coarse), changed - moments[0])
