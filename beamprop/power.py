@@ -2,7 +2,8 @@
 
 |h|^2 is not an analytic function of kx, so that no contour passes its resonances at a distance: panels on the real axis are
 halved towards them. Each panel is summed by two Gauss rules. Even where neither has a node inside of a narrow resonance they
-tell of it, for its tails, a pole next to the axis, are not the polynomial that both integrate.
+tell of it, for its tails, a pole next to the axis, are not the polynomial that both integrate. |h|^2 may have no such tails, in a
+narrow minimum of the reflection say, but h does.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from . import memory
 from .spectral import slow_ends
 
-#: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx: (2, n).
+#: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx, and the response h weighted by what was launched: (3, n).
 Density = Callable[[np.ndarray], np.ndarray]
 
 #: Nodes of both rules on a panel.
@@ -55,8 +56,9 @@ class _Sums(NamedTuple):
     """Sums on panels."""
 
     moments: np.ndarray  #: power, and first and second moment of its direction about a reference, (3, P)
-    apart: np.ndarray  #: by how much both rules for the power differ, (P,)
-    rounding: np.ndarray  #: by how much the power moves with the last bits of the input, (P,)
+    apart: np.ndarray  #: by how much both rules for the power and for the response differ, (2, P)
+    rounding: np.ndarray  #: by how much the power and the response move with the last bits of the input, (2, P)
+    response: np.ndarray  #: sum of the response, (P,)
 
 
 def radiated(density: Density, moved: Density, k: float, breaks: list[float], count: float, rtol: float) -> Radiated:
@@ -80,8 +82,9 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     about = float(first_look[1] / first_look[0]) if first_look[0] > 0 else 0.0
     found = _summed(*known, about)
     while start.size < MOST_PANELS:
-        allowed = max(SHARE * rtol, LEAST) * found.moments[0].sum() / math.sqrt(start.size)
-        split = found.apart > np.maximum(allowed, np.abs(found.rounding))
+        sizes = np.array([[found.moments[0].sum()], [np.abs(found.response).sum()]])
+        allowed = max(SHARE * rtol, LEAST) * sizes / math.sqrt(start.size)
+        split = np.any(found.apart > np.maximum(allowed, np.abs(found.rounding)), axis=0)
         if not np.any(split):
             break
         middle = (start + stop)[split] / 2
@@ -93,7 +96,7 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     if not total > 0:
         return NOTHING
     mean = first / total
-    error = (found.apart.sum() + abs(found.rounding.sum())) / total
+    error = (found.apart[0].sum() + abs(found.rounding[0].sum())) / total
     return Radiated(float(total), float(about + mean), math.sqrt(max(second / total - mean**2, 0.0)), float(error))
 
 
@@ -119,13 +122,18 @@ def _rule(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _summed(nodes: _Nodes, plain: np.ndarray, moved: np.ndarray, width: np.ndarray, about: float) -> _Sums:
-    """Sums of densities, plain at all nodes and moved in their last bits at those of the finer rule, (2, n)."""
-    right, left = plain.reshape(2, *nodes.kx.shape) * nodes.slope
+    """Sums of densities, plain at all nodes and moved in their last bits at those of the finer rule, (3, n)."""
+    right, left, response = plain.reshape(3, *nodes.kx.shape) * nodes.slope
+    right, left = right.real, left.real
     angle = np.degrees(nodes.alpha)
     off, across = angle - about, -angle - about
-    fine = np.stack([right + left, right * off + left * across, right * off**2 + left * across**2])
     v, half = _rule(FINE)[1], width / 2
-    moments = fine[..., :FINE] @ v * half
-    coarse = (right + left)[:, FINE:] @ _rule(COARSE)[1] * half
-    changed = (moved.sum(axis=0).reshape(-1, FINE) * nodes.slope[:, :FINE]) @ v * half
-    return _Sums(moments, np.abs(moments[0] - coarse), changed - moments[0])
+    moments = (
+        np.stack([right + left, right * off + left * across, right * off**2 + left * across**2])[..., :FINE] @ v * half
+    )
+    both = np.stack([right + left, response])
+    fine, coarse = both[..., :FINE] @ v * half, both[..., FINE:] @ _rule(COARSE)[1] * half
+    changed = moved.reshape(3, -1, FINE) * nodes.slope[:, :FINE]
+    changed = np.stack([changed[0] + changed[1], changed[2]]) @ v * half - fine
+    rounding = np.stack([changed[0].real, np.abs(changed[1])])
+    return _Sums(moments, np.abs(fine - coarse), rounding, fine[1])

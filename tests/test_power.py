@@ -70,14 +70,14 @@ def test_power_through_a_cavity_between_mirrors(beside, resonances):
     """Air between quarter waves of water, which are 3500 times as hard: at resonance all passes, beside it 1e-13.
 
     Above the frequency of the resonance at normal incidence there is one at some angle, a millionth of the angles wide and less,
-    through which most of the power goes.
+    through which most of the power goes. What is missing from the reflection, in as narrow a minimum, is that power.
     """
     rtol, layers, frequency = 1e-5, [WATER, AIR_GAP, WATER], F * (1 + beside)
     truth, found = transmitted_share(layers, frequency, 0.5, 3)
     (reflected, transmitted), told = measured(layers, frequency, rtol)
     assert found == resonances
     assert transmitted == pytest.approx(truth, rel=rtol)
-    assert reflected + transmitted == pytest.approx(1, abs=rtol)
+    assert reflected + transmitted == pytest.approx(1, abs=1e-9)
     assert told is None
 
 

@@ -315,8 +315,9 @@ def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, rtol: float) ->
     def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
         kx = kx.astype(complex)
         kz = outgoing_kz(kx, s.omega[0], *(v[0] for v in fluid)).real
-        flux = np.abs(face(kx, shift)) ** 2 * kz / fluid.rho_z[0].real
-        return flux * np.stack([np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 for sign in (1, -1)])
+        h = face(kx, shift)
+        right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 * kz / fluid.rho_z[0].real for sign in (1, -1))
+        return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
 
     count = 200 + 2 * k * (beam.reach(1e-6) + s.thickness - beam.z0)
     return power.radiated(density, lambda kx: density(kx, judge.SHIFT), k, real_branches(s), count, rtol)
