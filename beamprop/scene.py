@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -131,9 +132,42 @@ def up_to_wall(s: Scene) -> Scene:
     for i, (layers, _) in enumerate(s.segments):
         walls = np.flatnonzero(np.any(layers.vanishing, axis=1))
         if walls.size:
-            kept = LayerValues(*(v[: walls[0] + 1] for v in layers))
-            return s._replace(segments=[*s.segments[:i], SegmentValues(kept, 1)])
+            return s._replace(segments=[*s.segments[:i], _cut(s.segments[i], 0, walls[0] + 1)])
     return s
+
+
+def parts_between_walls(s: Scene) -> list[tuple[Scene, int]]:
+    """The parts into which layers of density 0 divide a slab off the normal, of one frequency, and how often each is there.
+
+    Such a layer is a soft wall, p = 0, on both sides. The first part has the half-space in front, the last one that behind; the
+    others are closed, and those of a cell that is repeated are alike. Each keeps the walls that bound it; of a half-space
+    behind a wall nothing is felt, and its branch point is left out.
+    """
+    found: list[tuple[list[SegmentValues], int]] = []
+    current: list[SegmentValues] = []
+    for segment in s.segments:
+        walls = [int(i) for i in np.flatnonzero(np.any(segment.layers.vanishing, axis=1))]
+        if not walls:
+            current.append(segment)
+            continue
+        front, back = _cut(segment, 0, walls[0] + 1), _cut(segment, walls[-1], None)
+        found.append(([*current, front], 1))
+        found += [([_cut(segment, a, b + 1)], segment.periods) for a, b in itertools.pairwise(walls)]
+        if segment.periods > 1:
+            found.append(([back, front], segment.periods - 1))
+        current = [back]
+    if not found:
+        return [(s, 1)]
+    unfelt = FluidValues(*np.ones((3, 1)))
+    parts = [(s._replace(segments=segments, before=unfelt, after=unfelt, branches=()), n) for segments, n in found]
+    parts[0] = parts[0][0]._replace(before=s.before, branches=s.branches[:1]), 1
+    parts.append((s._replace(segments=current, before=unfelt, branches=s.branches[1:]), 1))
+    return [(part, n) for part, n in parts if not all(np.all(values.layers.vanishing) for values in part.segments)]
+
+
+def _cut(segment: SegmentValues, start: int, stop: int | None) -> SegmentValues:
+    """Some layers of a cell, once."""
+    return SegmentValues(LayerValues(*(v[start:stop] for v in segment.layers)), 1)
 
 
 def may_guide_backward(s: Scene) -> bool:

@@ -271,7 +271,7 @@ def propagating_line(k0: float, breaks: list[float], count: int, dip: float = 0.
         stops = _towards_origin(even, min(sharp / k0, dip or math.inf) / (hi - lo)) if lo == 0 else even
         u = (stops[:-1, None] + np.diff(stops)[:, None] * (g + 1) / 2).ravel()
         w = (np.diff(stops)[:, None] * v / 2).ravel()
-        smooth, slope = _slow_ends(u, lo > 0, hi < edges[-1])
+        smooth, slope = slow_ends(u, lo > 0, hi < edges[-1])
         t = lo + (hi - lo) * smooth
         alpha, turn = _dipped(t, dip) if dip else (t, 1.0)
         k = k0 * np.sin(alpha)
@@ -294,7 +294,7 @@ def _towards_origin(stops: np.ndarray, sharp: float) -> np.ndarray:
     return np.concatenate([[0.0], stops[1] * 2.0 ** -np.arange(halvings, -1, -1), stops[2:]])
 
 
-def _slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
+def slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
     """A map of (0, 1) to itself, and its slope, that goes as u^2 at the chosen ends."""
     if at_0 and at_1:
         return u * u * (3 - 2 * u), 6 * u * (1 - u)

@@ -43,12 +43,12 @@ def through(s: Scene, z0: float) -> Transfer:
     """The transfer through a slab from the launch plane z0."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return factors(_shifted(s, shift), kx * (1 + shift), z, z0)
+        return factors(shifted(s, shift), kx * (1 + shift), z, z0)
 
     return transfer
 
 
-def _shifted(s: Scene, shift: float) -> Scene:
+def shifted(s: Scene, shift: float) -> Scene:
     """w (1 - shift), and layers of a cell that differ among themselves by an eighth of that: densities may cancel."""
     if not shift:
         return s
@@ -64,7 +64,7 @@ def free(s: Scene) -> Transfer:
     """The transfer through the medium in front alone, over the distance z."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        kz = outgoing_kz(kx * (1 + shift), _shifted(s, shift).omega[0], *(v[0] for v in s.before))
+        kz = outgoing_kz(kx * (1 + shift), shifted(s, shift).omega[0], *(v[0] for v in s.before))
         with np.errstate(
             over="ignore", invalid="ignore"
         ):  # over 1e39 m no contour is flat enough: refused by its plane waves

@@ -11,13 +11,15 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import simpson
 
-from .. import datasets, lines, memory, propagate, sections, spectral, validate, widths
+from .. import datasets, judge, lines, memory, power, propagate, sections, spectral, validate, widths
 from ..beam import Beam, moved_to_origin
 from ..conventions import outgoing_kz
 from ..fan import single
 from ..media import FluidValues, Slab
+from ..power import NOTHING, Radiated
 from ..response import solve
 from ..scene import Scene, real_branches, scene
+from ..transfers import shifted
 from . import checks
 from .checks import Progress
 
@@ -102,7 +104,7 @@ def beam_measures(
         A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice; |p|
         does not fall to a hundredth in the widest window that is tried, and none was given.
     AccuracyWarning
-        The estimated error of a beam's |p| is above rtol.
+        The estimated error of a beam's |p|, over the largest, or of its power, over that power, is above rtol.
     """
     validate.function(progress, "progress")
     validate.instance(slab, Slab, "slab")
@@ -113,17 +115,18 @@ def beam_measures(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in Beamlet._fields}
-    worst = 0.0
+    worst, worst_power = 0.0, 0.0
     source, origin = moved_to_origin(beam)
     for i, j in progress([(i, j) for i in range(flat.size) for j in range(flat_angles.size)]):
         s = scene(slab, float(flat[i]))
-        for side, (beamlet, error) in enumerate(_both(s, source.at_angle(float(flat_angles[j])), rtol, half)):
-            worst = max(worst, error)
+        for side, (beamlet, error, of_power) in enumerate(_both(s, source.at_angle(float(flat_angles[j])), rtol, half)):
+            worst, worst_power = max(worst, error), max(worst_power, of_power)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in PLACES:
         table[name] += origin
     checks.announce(worst, rtol)
+    checks.announce(worst_power, rtol, of="a power")
     _announce(table, window is not None)
     dims, pick = checks.dims(frequency=f, angle=angles)
     coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
@@ -157,11 +160,11 @@ def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
         )
 
 
-def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float]]:
-    """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
+def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float, float]]:
+    """The reflected and the transmitted beam, each with the estimated errors of its |p| over the largest, and of its power."""
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
-    launched = _power(s, beam, lambda kx: np.ones(kx.shape), s.before, s.k0)[0]
+    launched = _power(s, beam, _unchanged, s.before, rtol)
     out = []
     for transfer, place, fluid in (
         (_reflected(s, beam.z0), ray, s.before),
@@ -171,31 +174,48 @@ def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple
     return out
 
 
-#: kx (n,) -> h (n,)
-Face = Callable[[np.ndarray], np.ndarray]
+#: kx (n,), shift -> h (n,), at kx (1 + shift) and w (1 - shift): see `transfers`.
+Face = Callable[..., np.ndarray]
 
 
 def _launch(s: Scene, kx: np.ndarray, z0: float) -> np.ndarray:
     return np.exp(-1j * outgoing_kz(kx, s.omega[0], *(v[0] for v in s.before)) * z0)
 
 
+def _unchanged(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
+    return np.ones(kx.shape)
+
+
 def _reflected(s: Scene, z0: float) -> Face:
-    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).r[0] * _launch(s, kx, z0)
+    return lambda kx, shift=0.0: _response(shifted(s, shift), kx * (1 + shift), z0, "r")
 
 
 def _transmitted(s: Scene, z0: float) -> Face:
-    return lambda kx: solve(s.segments, s.before, s.after, s.omega, kx[None]).t[0] * _launch(s, kx, z0)
+    return lambda kx, shift=0.0: _response(shifted(s, shift), kx * (1 + shift), z0, "t")
+
+
+def _response(s: Scene, kx: np.ndarray, z0: float, name: str) -> np.ndarray:
+    """r or t of plane waves launched on z0."""
+    h: np.ndarray = getattr(solve(s.segments, s.before, s.after, s.omega, kx[None]), name)[0]
+    return h * _launch(s, kx, z0)
 
 
 def _measure(
-    s: Scene, beam: Beam, face: Face, ray: float, fluid: FluidValues, launched: float, rtol: float, window: float | None
-) -> tuple[Beamlet, float]:
+    s: Scene,
+    beam: Beam,
+    face: Face,
+    ray: float,
+    fluid: FluidValues,
+    launched: Radiated,
+    rtol: float,
+    window: float | None,
+) -> tuple[Beamlet, float, float]:
     if not _any_beam(s, beam, face):
-        return NO_BEAM, 0.0
+        return NO_BEAM, 0.0, 0.0
     plane = np.array([s.thickness])
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
+        return np.broadcast_to(face(kx, shift), (z.size, kx.size))  # the beam at its face, whatever z
 
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
@@ -210,7 +230,7 @@ def _measure(
     full = widths.full_width(x, p, 0.5, between)
     e2 = widths.full_width(x, p, math.exp(-1), between)
     centroid, spread, part = _moments(x, size, window is not None)
-    power, mean, deviation = _power(s, beam, face, fluid, _far_k(s, fluid))
+    radiated = _power(s, beam, face, fluid, rtol)
     crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
     beamlet = Beamlet(
         full.width,
@@ -219,15 +239,15 @@ def _measure(
         centroid,
         centroid - ray,
         full.peak,
-        power / launched if launched > 0 else math.nan,
-        2 * deviation,
-        mean,
+        radiated.total / launched.total if launched.total > 0 else math.nan,
+        2 * radiated.deviation,
+        radiated.mean,
         crossings,
         float(x[part][0]),
         float(x[part][-1]),
         float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
     )
-    return beamlet, float(solution.error[0])
+    return beamlet, float(solution.error[0]), radiated.error + launched.error
 
 
 #: What is said of a side without a beam.
@@ -286,21 +306,18 @@ def _far_k(s: Scene, fluid: FluidValues) -> float:
     return abs(k.real) if np.isfinite(k) else 0.0
 
 
-def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, k: float) -> tuple[float, float, float]:
-    """Radiated power of S h [W/m, but for a constant], and mean and deviation of its direction [degree]."""
+def _power(s: Scene, beam: Beam, face: Face, fluid: FluidValues, rtol: float) -> Radiated:
+    """What S h radiates into a half-space, but for a constant."""
+    k = _far_k(s, fluid)
     if k == 0:
-        return 0.0, math.nan, math.nan
-    extent = beam.reach(1e-6) + s.thickness - beam.z0
-    count = 200 + 2 * k * extent
-    memory.check_contour(count)
-    line = spectral.propagating_line(k, real_branches(s), int(count))
-    kz = outgoing_kz(line.k, s.omega[0], *(v[0] for v in fluid)).real
-    flux = np.abs(face(line.k)) ** 2 * kz / fluid.rho_z[0].real * line.weight
-    right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))
-    total = float((right + left).sum())
-    if not total > 0:
-        return 0.0, math.nan, math.nan
-    angle = np.degrees(np.arcsin(np.clip(line.k.real / k, -1, 1)))
-    mean = float(((right - left) * angle).sum()) / total
-    square = float((right * (angle - mean) ** 2 + left * (angle + mean) ** 2).sum()) / total
-    return total, mean, math.sqrt(square)
+        return NOTHING
+
+    def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        kx = kx.astype(complex)
+        kz = outgoing_kz(kx, s.omega[0], *(v[0] for v in fluid)).real
+        h = face(kx, shift)
+        right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 * kz / fluid.rho_z[0].real for sign in (1, -1))
+        return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
+
+    count = 200 + 2 * k * (beam.reach(1e-6) + s.thickness - beam.z0)
+    return power.radiated(density, lambda kx: density(kx, judge.SHIFT), k, real_branches(s), count, rtol)

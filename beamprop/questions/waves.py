@@ -13,7 +13,7 @@ import xarray as xr
 from .. import datasets, memory, modes, response, roots, validate
 from ..conventions import outgoing_kz
 from ..media import AIR, Cell, Fluid, Slab, layer_values, materials, slab_values
-from ..scene import last_branch, scene
+from ..scene import Scene, last_branch, parts_between_walls, scene
 from . import checks
 
 
@@ -243,6 +243,10 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     k_edge is the larger wavenumber of the two half-spaces; boxes are halved until Newton's method finds each one. -kx is a
     mode too.
 
+    A layer of density exactly 0 is a soft wall, p = 0, on both sides: the answer has the modes of the part in front, for which
+    k_edge is that of ``slab.before``, of the part behind, with that of ``slab.after``, and of the parts between two such
+    layers, which are closed: k_edge is k0/1000, since their modes may have any Re kx. The cells of a repeated one each have theirs.
+
     Parameters
     ----------
     slab : Slab
@@ -267,7 +271,7 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     Raises
     ------
     ValueError
-        Wrong arguments, a layer of density 0, or modes that were counted and not found.
+        Wrong arguments, or modes that were counted and not found.
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
@@ -300,11 +304,23 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     )
 
 
+#: Modes of a part between two walls are searched for from this Re kx on, over k0: those that decay along x lie at Re kx = 0.
+CLOSED = 1e-3
+
+
 def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[modes.Mode], int]:
-    s = scene(slab, frequency)
-    if any(np.any(values.layers.vanishing) for values in s.segments):
-        raise ValueError("slab: a layer of density 0 blocks every kx other than 0, the slab guides nothing")
-    edge = last_branch(s) * (1 + modes.BESIDE)
+    """The modes of all parts of a slab at one frequency, by Re kx, and how many the argument principle counts."""
+    found, total = [], 0
+    for part, times in parts_between_walls(scene(slab, frequency)):
+        own, count = _modes_of(part, frequency, highest, strip)
+        memory.check("slab", 400.0 * (total + times * count), "the modes of all its parts", "take fewer periods")
+        found += times * own
+        total += times * count
+    return sorted(found, key=lambda mode: mode.kx.real), total
+
+
+def _modes_of(s: Scene, frequency: float, highest: float, strip: float) -> tuple[list[modes.Mode], int]:
+    edge = last_branch(s) * (1 + modes.BESIDE) if s.branches else CLOSED * s.k0
     if highest * s.k0 <= edge:
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
