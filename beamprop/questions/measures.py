@@ -197,6 +197,7 @@ def _measure(
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
         return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
 
+    lines.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
@@ -206,7 +207,7 @@ def _measure(
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
             break
-    between = _between(s, beam, solution.line, h)
+    between = propagate.evaluator(s, beam, solution, h)
     full = widths.full_width(x, p, 0.5, between)
     e2 = widths.full_width(x, p, math.exp(-1), between)
     centroid, spread, part = _moments(x, size, window is not None)
@@ -240,10 +241,6 @@ def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
     return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
-
-
-def _between(s: Scene, beam: Beam, line: spectral.Line, h: np.ndarray) -> widths.Evaluate:
-    return lambda at: propagate.point_sum(s, beam, line, h, at)[0]
 
 
 def _windows(s: Scene, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:
