@@ -209,8 +209,8 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
     return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
 
 
-#: The most nodes over the propagating waves by which a beam is looked for where it lands.
-MOST_RAYS = 40_000
+#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum.
+MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 
 def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -219,7 +219,7 @@ def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: n
     path = float(z.max()) - fan.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
     found = np.full((2, angles.size, z.size), np.inf)
-    if count > MOST_RAYS:
+    if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
         return np.zeros(found.shape[1:])
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):

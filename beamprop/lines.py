@@ -323,7 +323,7 @@ def _in_stretches(search: _Search) -> _Tried:
         crowded = search.found is misplaced.UNCLEAR
         pair = stretches.pair_of_lines(s, search.reach, plan, search.start, crowded, ends, closed)
         if pair is None:
-            plan, unclear = plan._replace(depth=plan.depth / 3), True
+            plan, unclear = plan._replace(depth=plan.depth / 3, height=plan.height / 3), True
             continue
         if max(line.k.size for line in pair) > MOST_MODES:
             break

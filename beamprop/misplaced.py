@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .modes import BESIDE, Mode, dispersion_of, located, told
+from .modes import BESIDE, DispersionOf, Mode, dispersion_of, located, told
 from .response import dispersion
 from .roots import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
 from .scene import (
@@ -116,12 +116,14 @@ def _beside_cut(s: Scene, cut: float, contour: tuple[float, float, float], lifte
     return found
 
 
-def with_circles(s: Scene, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
+def with_circles(
+    s: Scene, found: list[Mode], others: tuple[complex, ...] = (), of: DispersionOf = dispersion_of
+) -> MisplacedPoles:
     """Discs around the backward ones among some modes; `others` are misplaced too."""
     groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
     middles = tuple(sum(group) / len(group) for group in groups)
     all_of_them = [*(m.kx for m in found), *others]
-    discs = (_free_disc(s, k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
+    discs = (_free_disc(s, of(s, 0.0), k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
     return MisplacedPoles(middles, tuple(discs))
 
 
@@ -138,15 +140,15 @@ def _any_mode(s: Scene, box: Box, edge: float, above: float) -> bool:
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
-def few_modes(s: Scene, box: Box) -> list[Mode]:
+def few_modes(s: Scene, box: Box, of: DispersionOf = dispersion_of) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
-    total = winding(dispersion_of(s), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
+    total = winding(of(s, 0.0), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
-    found = located(s, box, total, MOST_WRONG, MOST_VALUES)
+    found = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
     if len(found) < total:
         raise TooManyModes
-    return told(s, found)
+    return told(s, found, of)
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
@@ -161,12 +163,12 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
     return groups
 
 
-def _free_disc(s: Scene, k: complex, group: list[complex], others: list[complex]) -> float:
+def _free_disc(s: Scene, f: Dispersion, k: complex, group: list[complex], others: list[complex]) -> float:
     """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
     branches = (complex(on_the_right(b)) for b in s.branches)
     radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
-    f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
+    circle = np.exp(2j * np.pi * np.arange(24) / 24)
     least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))
     at_least = winding(f, k + least * circle, 1e-12 * abs(k), MOST_VALUES)
     while radius > least and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:

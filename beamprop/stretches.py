@@ -22,10 +22,10 @@ import numpy as np
 
 from . import misplaced
 from .misplaced import MisplacedPoles
-from .modes import BESIDE, Mode
-from .response import cell_matrix
-from .roots import Box, TooManyModes
-from .scene import Scene, on_the_right
+from .modes import BESIDE, Mode, dispersion_of
+from .response import bloch_phase, cell_matrix
+from .roots import Box, Dispersion, TooManyModes
+from .scene import Scene, on_the_right, with_loss
 from .spectral import SLOPE, Line, Reach
 
 
@@ -138,10 +138,26 @@ def misplaced_in_gaps(s: Scene, bands: Bands, away: float) -> list[MisplacedPole
         for left, right in itertools.pairwise(ends):
             if right - left > 3 * BESIDE * right:
                 side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
-                here = misplaced.few_modes(s, Box(left, right, -away, away))
+                here = misplaced.few_modes(s, Box(left, right, -away, away), _without_growth)
                 found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
-    above = misplaced.with_circles(s, found[1])._replace(crossing=0.0)
-    return [misplaced.with_circles(s, found[-1]), above]
+    above, below = (misplaced.with_circles(s, found[side], of=_without_growth) for side in (1, -1))
+    return [below, above._replace(crossing=0.0)]
+
+
+def _without_growth(s: Scene, loss: float) -> Dispersion:
+    """D of a periodic slab, made more lossy, over the growth of Bloch waves across it: an analytic function without zeros in a gap.
+
+    Of very many periods D turns as often as they do along any outline off the axis; what is left turns as the faces have it.
+    """
+    lossy, f = with_loss(s, loss), dispersion_of(s, loss)
+    layers, periods = lossy.segments[0]
+
+    def evaluate(kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        k = np.asarray(kx, complex)
+        value, log = f(k)
+        return value, log + 1j * periods * bloch_phase(cell_matrix(layers, lossy.omega, k[None])).phase[0]
+
+    return evaluate
 
 
 def met_at_branches(s: Scene, parts: list[Stretch]) -> list[Stretch]:
