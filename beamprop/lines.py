@@ -159,9 +159,12 @@ class _Search:
     def refusal(self) -> str:
         """Why poles cannot be put right, and what would do."""
         plan = self._planned(math.inf)
-        loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, self.start)
+        # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
+        shallower = [plan, *(self._planned(plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81))]
+        depths = [1.05 * p.depth for p in shallower if p is plan or p.other().nodes < MOST_MODES / 4]
+        loss = misplaced.enough_loss(self.scene, depths, 1.15 * plan.band, self.start)
         remedy = (
-            ""
+            ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"
             if loss is None
             else (
                 f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -77,16 +78,21 @@ def misplaced(s: Scene, depth: float, band: float, start: float) -> MisplacedPol
     if not may_guide_backward(s):
         return NONE
     s = up_to_wall(s)
-    try:
-        found = with_circles(s, _below(s, depth, band, start))
-    except TooManyModes:
-        found = UNCLEAR
+    found = _with_circles_alone(s, depth, band, start)
     if backward_branch(s) is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
         return found
     try:
         return _with_crossing(s, depth, band, start) or found
     except TooManyModes:
         return found
+
+
+def _with_circles_alone(s: Scene, depth: float, band: float, start: float) -> MisplacedPoles:
+    """Circles around the poles that a contour below the axis leaves above it; UNCLEAR where they are too many."""
+    try:
+        return with_circles(s, _below(s, depth, band, start))
+    except TooManyModes:
+        return UNCLEAR
 
 
 def _below(s: Scene, depth: float, band: float, start: float) -> list[Mode]:
@@ -266,20 +272,31 @@ def _found_above(s: Scene, f: Dispersion, box: Box, total: int) -> tuple[complex
     return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in found)
 
 
-#: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
-REMEDIES = 10.0 ** np.arange(-6, 0)
-#: And shares of a contour's depth that are tried with them.
-SHALLOWER = (1.0, 0.1, 0.01)
+#: Losses among which one is named where poles cannot be told apart, relative to each density and modulus.
+REMEDIES = 10.0 ** np.arange(-6, 1)
 
 
-def enough_loss(s: Scene, depth: float, band: float, start: float) -> float | None:
-    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
-    for loss in REMEDIES:
-        lossy = with_loss(s, float(loss))
-        for share in SHALLOWER:
-            if misplaced(lossy, share * depth, band, start) is not UNCLEAR:
-                return float(loss)
-    return None
+def enough_loss(s: Scene, depths: Sequence[float], band: float, start: float) -> float | None:
+    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does.
+
+    At one of some depths, those that the search for a contour would try, by circles alone: places for a crossing take ten times as
+    long to find. More loss moves more modes away from the axis: the largest is tried first, then the middle of those that are left.
+    """
+
+    def does(loss: float) -> bool:
+        lossy = up_to_wall(with_loss(s, loss))
+        return any(_with_circles_alone(lossy, depth, band, start) is not UNCLEAR for depth in depths)
+
+    if not does(float(REMEDIES[-1])):
+        return None
+    too_little, enough = -1, REMEDIES.size - 1
+    while enough - too_little > 1:
+        middle = (too_little + enough) // 2
+        if does(float(REMEDIES[middle])):
+            enough = middle
+        else:
+            too_little = middle
+    return float(REMEDIES[enough])
 
 
 # --- many frequencies -------------------------------------------------------------------------------------

@@ -159,6 +159,7 @@ def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
 
 def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float]]:
     """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
+    lines.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
     launched = _power(s, beam, lambda kx: np.ones(kx.shape), s.before, s.k0)[0]
@@ -197,7 +198,6 @@ def _measure(
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
         return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
 
-    lines.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     for x in _windows(s, beam, ray, window):
         solution = lines.choose_line(s, single(beam), transfer, x, plane, rtol)
         h = face(solution.line.k)[None]
