@@ -385,7 +385,9 @@ def test_crossings_alone_and_together():
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = at_frequency(s, i)
-        alone = sections._measured_alone(one, beam, transfers.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        alone = sections._measured_alone(
+            one, beam, transfers.through(one, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
+        )
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
 
