@@ -63,6 +63,13 @@ class Fan(NamedTuple):
         ends = [self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max())]
         return max(0.0, min(lo for lo, _ in ends), -max(hi for _, hi in ends))
 
+    def spectrum_ends(self, k0: float) -> np.ndarray:
+        """Every |kx|, in order, at which a spectrum is cut off inside its values [rad/m]: none for most sources."""
+        if getattr(self.beam, "spectrum_ends", None) is None:
+            return np.empty(0)
+        ends = [self.at(float(a)).spectrum_ends(k0) for a in self.angles]  # type: ignore[attr-defined]
+        return np.unique(np.abs(ends))
+
     def mixed(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
         """The asked fields (A, ...) of those that were summed (B, ...), complex."""
         if self.mix is None:

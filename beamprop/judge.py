@@ -223,8 +223,8 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
     return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
 
 
-#: The most nodes over the propagating waves by which a beam is looked for where it lands.
-MOST_RAYS = 40_000
+#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum.
+MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 
 def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -233,7 +233,7 @@ def _brightness(s: Scene, fan: Fan, transfer: Transfer, z: np.ndarray, angles: n
     path = float(z.max()) - fan.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
     found = np.full((2, angles.size, z.size), np.inf)
-    if count > MOST_RAYS:
+    if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
         return np.zeros(found.shape[1:])
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
@@ -262,6 +262,21 @@ def arriving_band(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> f
     strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
     last = int(np.flatnonzero(strong)[-1]) if np.any(strong) else 0
     return float(k[min(last + 1, k.size - 1)])
+
+
+def cut_spectra(s: Scene, checks: Checks, reach: Reach, tolerance: float) -> np.ndarray:
+    """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
+    ends = checks.fan.spectrum_ends(s.k0)
+    ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
+    if not ends.size:
+        return ends
+    # spectra of edges have zeros: the last twentieth in front of each end stands for it
+    before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
+    k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
+    launched = np.max(np.abs(checks.fan.spectra(k, s.k0)) + np.abs(checks.fan.spectra(-k, s.k0)), axis=0)
+    size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+    at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
+    return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]
 
 
 #: Of more asked beams than this so many are judged, spread evenly over the angles; those between take the worse neighbour's error.
@@ -306,7 +321,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
             mix = None if fan.mix is None else np.abs(fan.mix)
             edge, cut = (
                 _beyond(two, right2, left2),
-                _cut_off(checks.k0, fan, one, right1, left1, float(np.max(np.abs(x)))),
+                _cut_off(checks, one, right1, left1, float(np.max(np.abs(x)))),
             )
             first_edge = _beyond(one, right1, left1)
             edge, cut, first_edge = (v if mix is None else mix @ v for v in (edge, cut, first_edge))
@@ -343,6 +358,8 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Size of what lies beyond the end of a path: its last two tenths, continued geometrically; (B, Z)."""
+    if end.line.closed:
+        return np.zeros((right.shape[0], end.h.shape[0]))
     n, circles = end.line.k.size, end.line.circles
     tenth = max(1, (n - circles) // 10)
     tail = slice(max(circles, n - 2 * tenth), n)
@@ -352,12 +369,13 @@ def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     return 2 * last * ratio / (1 - ratio)
 
 
-def _cut_off(k0: float, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
+def _cut_off(checks: Checks, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
     """Size of what is missing where a spectrum ends inside a line (samples too coarse for their profile); (B, Z).
 
-    |w S h e^{ikx}| at the last node, times the nodes that would fit between it and the real axis, where the cut is defined.
+    |w S h e^{ikx}| at the last node or above it on the real axis, where the cut is defined, times the nodes that would fit between
+    them: on a long way along z waves below the axis have died when those on the axis have not.
     """
-    line = one.line
+    line, fan, k0 = one.line, checks.fan, checks.k0
     missing = np.zeros((right.shape[0], one.h.shape[0]))
     for side, amplitude in ((1, right), (-1, left)):
         beyond = fan.spectra(side * _after(line, line.k.size - 1), k0)
@@ -369,9 +387,9 @@ def _cut_off(k0: float, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndar
             if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), k0).any():
                 continue
             step, depth = max(abs(line.k[j] - line.k[j - 1]), 1e-300), abs(line.k[j].imag)
-            missing[i] += (
-                np.abs(amplitude[i, j] * one.h[:, j]) * (1 + depth / step) * math.exp(min(depth * extent, 100))
-            )
+            below = np.abs(one.h[:, j]) * math.exp(min(depth * extent, 100))
+            on_axis = np.nan_to_num(np.abs(checks.transfer(np.array([line.k[j].real + 0j]), checks.z)[:, 0]))
+            missing[i] += np.abs(amplitude[i, j]) * np.maximum(below, on_axis) * (1 + depth / step)
     return missing
 
 

@@ -16,14 +16,14 @@ from .fan import Fan, single
 from .lines import Solution, fft_is_cheaper
 from .planes import cross, mixing
 from .scene import Scene
-from .spectral import Line
 from .transfers import Transfer
+from .widths import Evaluate
 
 
-def point_sum(s: Scene, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """p(z, x) at any x by a matrix product."""
-    right, left = judge.amplitudes(s.k0, single(beam), line)
-    return spectral.direct_sum(line, h, right[0], left[0], x - beam.centre)
+def evaluator(s: Scene, beam: Beam, solution: Solution, h: np.ndarray) -> Evaluate:
+    """p at any x on the one plane of h: plane waves are solved and their amplitudes formed once, whatever is asked then."""
+    right, left = solution.amplitudes_of(s.k0, single(beam))
+    return lambda at: np.asarray(spectral.direct_sum(solution.line, h, right[0], left[0], at - beam.centre))[0]
 
 
 def beam_sum(s: Scene, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:

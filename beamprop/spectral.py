@@ -55,6 +55,7 @@ class Line(NamedTuple):
     sigma: Any = 0.0
     delta: Any = 0.0
     circles: int = 0
+    closed: bool = False  #: whether it ends where the spectra do: nothing lies beyond
 
 
 class Reach(NamedTuple):

@@ -191,8 +191,8 @@ def test_wrong_side_would_be_seen():
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
     transfer = transfers.through(s, 0.0)
     with_them, without = (
-        propagate.point_sum(s, beam, line, transfer(line.k, z), x)
-        for line in (lines.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False))
+        propagate.evaluator(s, beam, chosen, transfer(chosen.line.k, z))(x)
+        for chosen in (lines.choose_line(s, single(beam), transfer, x, z, 1e-8, guided) for guided in (True, False))
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 
@@ -385,7 +385,9 @@ def test_crossings_alone_and_together():
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = at_frequency(s, i)
-        alone = sections._measured_alone(one, beam, transfers.through(one, 0.0), slab.thickness, 1e-6, 0.5, True)
+        alone = sections._measured_alone(
+            one, beam, transfers.through(one, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
+        )
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from scipy.integrate import simpson
 
-from .. import datasets, judge, lines, memory, power, propagate, sections, spectral, validate, widths
+from .. import datasets, judge, lines, memory, power, propagate, sections, validate, widths
 from ..beam import Beam, moved_to_origin
 from ..conventions import outgoing_kz
 from ..fan import single
@@ -162,6 +162,7 @@ def _announce(table: dict[str, np.ndarray], chosen: bool) -> None:
 
 def _both(s: Scene, beam: Beam, rtol: float, window: float | None) -> list[tuple[Beamlet, float, float]]:
     """The reflected and the transmitted beam, each with the estimated errors of its |p| over the largest, and of its power."""
+    lines.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
     launched = _power(s, beam, _unchanged, s.before, rtol)
@@ -226,7 +227,7 @@ def _measure(
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
             break
-    between = _between(s, beam, solution.line, h)
+    between = propagate.evaluator(s, beam, solution, h)
     full = widths.full_width(x, p, 0.5, between)
     e2 = widths.full_width(x, p, math.exp(-1), between)
     centroid, spread, part = _moments(x, size, window is not None)
@@ -260,10 +261,6 @@ def _any_beam(s: Scene, beam: Beam, face: Face) -> bool:
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
     return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
-
-
-def _between(s: Scene, beam: Beam, line: spectral.Line, h: np.ndarray) -> widths.Evaluate:
-    return lambda at: propagate.point_sum(s, beam, line, h, at)[0]
 
 
 def _windows(s: Scene, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:

@@ -18,7 +18,7 @@ accuracy.py: r and t with estimated errors. bloch.py: infinite stacks.
 
 from .accuracy import SHIFT, Checked, solve_checked
 from .bloch import bloch_error, bloch_wavenumber
-from .cells import cell_matrix
+from .cells import bloch_phase, cell_matrix
 from .layers import perturbed
 from .slab import Response, dispersion, solve
 
@@ -27,6 +27,7 @@ __all__ = [
     "Checked",
     "Response",
     "bloch_error",
+    "bloch_phase",
     "bloch_wavenumber",
     "cell_matrix",
     "dispersion",
