@@ -62,7 +62,9 @@ def check_points(
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     own = centre + source * np.linspace(-1, 1, around)
-    return np.concatenate([xs, own, _towards_ends(x, xs, source)]), np.unique([*pick, *near])
+    ends = _towards_ends(x, xs, source)
+    even = xs[::2] if ends.size else xs
+    return np.concatenate([even, own, ends]), np.unique([*pick, *near])
 
 
 def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
@@ -73,7 +75,7 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
     apart = float(np.max(np.diff(picked), initial=0.0))
     if apart <= 2 * source:
         return np.empty(0)
-    steps = np.geomspace(source, apart, 2 + math.ceil(4 * math.log2(apart / source)))
+    steps = np.geomspace(source, apart, 2 + math.ceil(2 * math.log2(apart / source)))
     wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
     order = np.sort(x)
     return order[np.clip(np.searchsorted(order, wanted), 0, x.size - 1)]

@@ -88,14 +88,17 @@ def as_launched(case: Case) -> Truth:
     return Truth(p, np.abs(p).max(axis=1), np.array([EPS]), np.zeros(1, bool), 0)
 
 
-def _coarse_profiles() -> Iterator[Case]:
-    """White noise sampled every third of a wavelength to every wavelength: its spectrum ends in a step."""
+def _coarse_profiles() -> Iterator[Among]:
+    """White noise sampled every third of a wavelength to every wavelength: its spectrum ends in a step.
+
+    At more angles than those for which the contour comes up to the axis at the steps.
+    """
     for seed, spacing in enumerate((0.2, 0.33, 0.45, 0.8)):
         rng = np.random.default_rng(seed)
         x = np.arange(40) * spacing * C_AIR / 2500
         beam = bp.Profile(x - x.mean(), rng.normal(size=40) + 1j * rng.normal(size=40), -0.02)
         case = _built(bp.Slab.uniform(bp.AIR, 0.1), beam, np.linspace(beam.x[0], beam.x[-1], 37), [0.0], 1e-6)
-        yield case._replace(kind=STEPPED)
+        yield Among(case._replace(kind=STEPPED), np.linspace(-10, 10, 21))
 
 
 def _cones() -> Iterator[Case]:
