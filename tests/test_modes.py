@@ -194,8 +194,8 @@ def test_wrong_side_would_be_seen():
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
     transfer = transfer_function.through(s, 0.0)
     with_them, without = (
-        evaluate.point_sum(s, beam, line, transfer(line.k, z), x)
-        for line in (choose.choose_line(s, single(beam), transfer, x, z, 1e-8, guided).line for guided in (True, False))
+        evaluate.evaluator(s, beam, chosen, transfer(chosen.line.k, z))(x)
+        for chosen in (choose.choose_line(s, single(beam), transfer, x, z, 1e-8, guided) for guided in (True, False))
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 
@@ -396,7 +396,7 @@ def test_crossings_alone_and_together():
     for i in range(3):
         one = s.take(i)
         alone = sections._measured_alone(
-            one, beam, transfer_function.through(one, 0.0), slab.thickness, 1e-6, 0.5, True
+            one, beam, transfer_function.through(one, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
         )
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)

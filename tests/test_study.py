@@ -82,9 +82,17 @@ def test_terms_are_where_the_table_says(term):
     assert getattr(module, term.function) is kept
 
 
-@pytest.mark.parametrize("name", ["a spectrum that is cut off", "brightness outside the window"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "a spectrum that is cut off",
+        "rounding of a profile's samples",
+        "mixing of angles",
+        "brightness outside the window",
+    ],
+)
 def test_terms_are_needed(name):
-    """Two of those that take a second; `--terms` shows the others."""
+    """Those that take a second or less; `--terms` shows the others."""
     term = next(t for t in terms.TERMS if t.name == name)
     found = terms.decided(term)
     assert found is not None

@@ -74,7 +74,7 @@ def beam_measures(
         A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice; |p|
         does not fall to a hundredth in the widest window that is tried, and none was given.
     AccuracyWarning
-        The estimated error of a beam's |p| is above rtol.
+        The estimated error of a beam's |p|, over the largest, or of its power, over that power, is above rtol.
     """
     validate.flag_or_function(progress, "progress")
     validate.instance(slab, Slab, "slab")
@@ -85,20 +85,20 @@ def beam_measures(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in measures.Beamlet._fields}
-    worst = 0.0
+    worst, worst_power = 0.0, 0.0
     source, origin = moved_to_origin(beam)
     each = [(i, j) for i in range(flat.size) for j in range(flat_angles.size)]
     for i, j in watched(progress, each, "beams"):
         s = sample(slab, float(flat[i]))
-        for side, (beamlet, error) in enumerate(
-            measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)
-        ):
-            worst = max(worst, error)
+        both = measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)
+        for side, (beamlet, error, of_power) in enumerate(both):
+            worst, worst_power = max(worst, error), max(worst_power, of_power)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in PLACES:
         table[name] += origin
     checks.warn_if_inaccurate(worst, rtol)
+    checks.warn_if_inaccurate(worst_power, rtol, of="a power")
     _warn_of_windows(table, window is not None)
     dims, pick = checks.dims(frequency=f, angle=angles)
     coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}

@@ -16,11 +16,11 @@ class AccuracyWarning(UserWarning):
     """An answer whose estimated error is above the asked rtol."""
 
 
-def warn_if_inaccurate(error: float, rtol: float, stacklevel: int = 3) -> None:
+def warn_if_inaccurate(error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|") -> None:
     """Nothing above rtol leaves a public call without a word."""
     if error > rtol:
         warnings.warn(
-            f"estimated error {error:.1e} of the largest |p|, above the asked rtol {rtol:.1e}",
+            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}",
             AccuracyWarning,
             stacklevel=stacklevel,
         )

@@ -11,7 +11,7 @@ from .. import memory, validate
 from ..io import datasets
 from ..media.structures import Slab
 from ..modes import argument_principle, guided
-from ..response.sampled_slab import sample
+from ..response.sampled_slab import SampledSlab, sample
 from . import checks
 
 
@@ -21,6 +21,10 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     The argument principle counts them in the strip k_edge < Re kx < kx_over_k0_max k0, \\|Im kx\\| < strip_over_k0 k0, where
     k_edge is the larger wavenumber of the two half-spaces; boxes are halved until Newton's method finds each one. -kx is a
     mode too.
+
+    A layer of density exactly 0 is a soft wall, p = 0, on both sides: the answer has the modes of the part in front, for which
+    k_edge is that of ``slab.before``, of the part behind, with that of ``slab.after``, and of the parts between two such
+    layers, which are closed: k_edge is k0/1000, since their modes may have any Re kx. The cells of a repeated one each have theirs.
 
     Parameters
     ----------
@@ -46,7 +50,7 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     Raises
     ------
     ValueError
-        Wrong arguments, a layer of density 0, or modes that were counted and not found.
+        Wrong arguments, or modes that were counted and not found.
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
@@ -79,11 +83,23 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     )
 
 
+#: Modes of a part between two walls are searched for from this Re kx on, over k0: those that decay along x lie at Re kx = 0.
+CLOSED = 1e-3
+
+
 def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
-    s = sample(slab, frequency)
-    if s.has_wall:
-        raise ValueError("slab: a layer of density 0 blocks every kx other than 0, the slab guides nothing")
-    edge = s.last_branch * (1 + guided.BESIDE)
+    """The modes of all parts of a slab at one frequency, by Re kx, and how many the argument principle counts."""
+    found, total = [], 0
+    for part, times in sample(slab, frequency).parts_between_walls():
+        own, count = _modes_of(part, frequency, highest, strip)
+        memory.check("slab", 400.0 * (total + times * count), "the modes of all its parts", "take fewer periods")
+        found += times * own
+        total += times * count
+    return sorted(found, key=lambda mode: mode.kx.real), total
+
+
+def _modes_of(s: SampledSlab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
+    edge = s.last_branch * (1 + guided.BESIDE) if s.branch_points else CLOSED * s.k0
     if highest * s.k0 <= edge:
         raise ValueError(
             f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"

@@ -15,6 +15,7 @@ from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer
 from ..sources.angles import Fan
+from ..sources.beams import Beam
 from . import error_estimate, paths, peak_outside, residues, stretches
 from .error_estimate import Checks
 from .paths import BentPlan, Line, Reach
@@ -29,7 +30,7 @@ FEWEST = 8
 
 
 def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
-    """Spacing of a grid that is even as far as an FFT needs it (see `spectral.grid_sum`), 0 for any other."""
+    """Spacing of a grid that is even as far as an FFT needs it (see `paths.grid_sum`), 0 for any other."""
     grid = paths.grid_of(x)
     moved = band * grid.unevenness
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
@@ -104,13 +105,15 @@ def _chosen(
     search = _Search(s, checks, reach, rtol, seen)
     if s.backward_branch is not None and checks.guided:
         return _solution_in_stretches(search)
-    straight = None if search.too_wide() else _straight_solution(search, x)
+    straight = None if search.too_wide() or search.ends.size else _straight_solution(search, x)
     if straight:
         return straight
     bent = _bent_solution(search)
-    return _straight_solution(search, x) or bent
+    return bent if search.ends.size else _straight_solution(search, x) or bent
 
 
+#: The most beams whose spectra's ends a contour meets on the axis.
+MOST_CUT = 8
 #: From how many plane waves on those nearer to the normal than a beam's own are left out.
 MANY_MODES = 20_000
 
@@ -132,6 +135,10 @@ class _Search:
                 self.plan = self._planned(math.inf)
         self.found, self.searched = misplaced.NONE, 0.0 if checks.guided else math.inf
         self.judged_by: BentPlan | None = None  # the last plan by which a straight line was judged
+
+        self.ends = np.empty(0)  # where spectra are cut off that matter
+        if checks.fan.asked.size <= MOST_CUT:
+            self.ends = error_estimate.cut_spectra(s, checks, self.reach, 0.1 * rtol)
 
     def _planned(self, deepest: float) -> BentPlan:
         return paths.plan_bent(self.reach, self.rtol, self.noise, deepest, self.sharp)
@@ -156,9 +163,12 @@ class _Search:
     def refusal(self) -> str:
         """Why poles cannot be put right, and what would do."""
         plan = self._planned(math.inf)
-        loss = misplaced.enough_loss(self.scene, 1.05 * plan.depth, 1.15 * plan.band, self.start)
+        # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
+        shallower = [plan, *(self._planned(plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81))]
+        depths = [1.05 * p.depth for p in shallower if p is plan or p.other().nodes < MOST_MODES / 4]
+        loss = misplaced.enough_loss(self.scene, depths, 1.15 * plan.band, self.start)
         remedy = (
-            ""
+            ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"
             if loss is None
             else (
                 f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
@@ -214,6 +224,10 @@ def _bent_solution(search: _Search) -> Solution:
             shrinks -= 1
             search.shallower(plan.depth / 3)
             continue
+        if search.ends.size and best is None:
+            best = _in_stretches(search).best
+            if best is not None and best.error.max() <= rtol:
+                return best
         line, second = search.lines()
         one, two = error_estimate.sampled(checks, line, False), error_estimate.sampled(checks, second, True)
         error, edge = error_estimate.difference(checks, one, two)
@@ -287,15 +301,36 @@ def _too_many(rtol: float) -> str:
 TRIES_IN_STRETCHES = 7
 
 
+class _Tried(NamedTuple):
+    """The best of the contours in stretches that were tried, if any served, and whether poles were unclear."""
+
+    best: Solution | None
+    unclear: bool
+
+
 def _solution_in_stretches(search: _Search) -> Solution:
+    """A contour in stretches, or the refusal of a question for which there is none."""
+    best, unclear = _in_stretches(search)
+    if best is None:
+        raise ValueError(search.refusal() if unclear else _too_many(search.rtol))
+    if search.found is misplaced.UNCLEAR and best.error.max() > 1:  # no digit is known
+        raise ValueError(search.refusal())
+    return best
+
+
+def _in_stretches(search: _Search) -> _Tried:
     """Shorten the panels, or widen the band where its edge is what is missing, until two contours in stretches agree."""
-    s, checks, rtol = search.scene, search.checks, search.rtol
+    s, checks, rtol, ends = search.scene, search.checks, search.rtol, search.ends
     plan = stretches.plan_stretches(search.reach, search.reach.path - s.thickness, rtol, search.noise)
-    best, why, in_vain = None, _too_many(rtol), 0
+    closed = bool(ends.size) and bool(ends[-1] == np.max(checks.fan.spectrum_ends(s.k0)))
+    if closed:
+        plan = plan._replace(band=1.01 * float(ends[-1]))
+    best, unclear, in_vain = None, False, 0
     for _ in range(TRIES_IN_STRETCHES):
-        pair = stretches.pair_of_lines(s, search.reach, plan, search.start, search.found is misplaced.UNCLEAR)
+        crowded = search.found is misplaced.UNCLEAR
+        pair = stretches.pair_of_lines(s, search.reach, plan, search.start, crowded, ends, closed)
         if pair is None:
-            plan, why = plan._replace(depth=plan.depth / 3), search.refusal()
+            plan, unclear = plan._replace(depth=plan.depth / 3, height=plan.height / 3), True
             continue
         if max(line.k.size for line in pair) > MOST_MODES:
             break
@@ -315,11 +350,7 @@ def _solution_in_stretches(search: _Search) -> Solution:
         plan = plan._replace(band=plan.band * wider)
         if wider == 1.0:
             plan = plan._replace(depth=plan.depth * 0.7, height=plan.height * 0.75, finer=plan.finer * 1.4)
-    if best is None:
-        raise ValueError(why)
-    if search.found is misplaced.UNCLEAR and best.error.max() > 1:  # no digit is known
-        raise ValueError(search.refusal())
-    return best
+    return _Tried(best, unclear)
 
 
 #: What share of its window a straight line is tried with first, and how much more of everything it is given then.
@@ -376,11 +407,30 @@ def _dip(s: SampledSlab, reach: Reach, rtol: float, sharp: float) -> float:
     return dip if not found.poles else 0.0
 
 
+#: The most plane waves of a rotated beam whose width is asked for: a contour of so many is judged within some seconds, and then
+#: summed at some hundred positions.
+MOST_OF_WIDTHS = 600_000
+
+
+def _rays(k0: float, length: float) -> int:
+    """Gauss nodes over the propagating waves by which a field is tried first, `length` being the way along x and z."""
+    return int(60 + 0.6 * k0 * length)
+
+
+def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
+    """Refuse the width of a beam of propagating waves alone whose phases turn too often over its way."""
+    if not beam.entire and (waves := 1.4 * _rays(s.k0, path + extent)) > MOST_OF_WIDTHS:
+        raise ValueError(
+            f"z0: expected a way that beams of propagating waves alone go with at most {MOST_OF_WIDTHS} plane waves, got {path:.3g} m of "
+            f"it, which take {waves:.2g}: take a launch plane and a slab's far face that are nearer, or form='launch', which takes fewer"
+        )
+
+
 def _propagating_solution(
     s: SampledSlab, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey
 ) -> Solution:
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes, on contours that dip differently, agree."""
-    count = int(60 + 0.6 * reach.k0 * (reach.extent + reach.path))
+    count = _rays(reach.k0, reach.extent + reach.path)
     dip = _dip(s, reach, rtol, seen.sharp) if checks.guided else 0.0
     for _ in range(6):
         memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
@@ -396,7 +446,7 @@ def _propagating_solution(
         if error.max() <= rtol or count > MOST_MODES // 4:
             break
         count = int(1.8 * count)
-    return Solution(lines[1], error)
+    return Solution(lines[1], error, amplitudes=two.amplitudes)
 
 
 def periodic_solution(s: SampledSlab, fan: Fan, x: np.ndarray, period: float) -> Solution:

@@ -62,7 +62,9 @@ def check_points(
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     own = centre + source * np.linspace(-1, 1, around)
-    return np.concatenate([xs, own, _towards_ends(x, xs, source)]), np.unique([*pick, *near])
+    ends = _towards_ends(x, xs, source)
+    even = xs[::2] if ends.size else xs
+    return np.concatenate([even, own, ends]), np.unique([*pick, *near])
 
 
 def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
@@ -73,7 +75,7 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
     apart = float(np.max(np.diff(picked), initial=0.0))
     if apart <= 2 * source:
         return np.empty(0)
-    steps = np.geomspace(source, apart, 2 + math.ceil(4 * math.log2(apart / source)))
+    steps = np.geomspace(source, apart, 2 + math.ceil(2 * math.log2(apart / source)))
     wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
     order = np.sort(x)
     return order[np.clip(np.searchsorted(order, wanted), 0, x.size - 1)]
@@ -96,7 +98,7 @@ def darkest_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray) -> np
     """
     order = np.sort(z)
     found: list[float] = []
-    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 3).round().astype(int))]
+    some = fan.spread(3)
     for angle in fan.asked[some]:
         darker = _darkness(_strengths(fan.at(float(angle)), k0, transfer, order), order, np.pi / k0)
         picked: list[float] = []
@@ -127,7 +129,7 @@ def with_dark_planes(checks: Checks) -> Checks:
     fan, k0, transfer, z = checks.fan, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
     near = np.concatenate([z, np.maximum(z - step, fan.beam.z0), z + step])
-    some = np.argsort(fan.asked)[np.unique(np.linspace(0, fan.asked.size - 1, 9).round().astype(int))]
+    some = fan.spread(9)
     dark = []
     for angle in fan.asked[some]:
         here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
@@ -168,7 +170,7 @@ def survey(
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     asked = fan.asked
-    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 3).round().astype(int))]
+    some = fan.spread(3)
     rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
@@ -225,8 +227,8 @@ def _strong(beam: Beam, k0: float) -> np.ndarray:
     return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
 
 
-#: The most nodes over the propagating waves by which a beam is looked for where it lands.
-MOST_RAYS = 40_000
+#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum.
+MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 
 def _brightness(
@@ -237,7 +239,7 @@ def _brightness(
     path = float(z.max()) - fan.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
     found = np.full((2, angles.size, z.size), np.inf)
-    if count > MOST_RAYS:
+    if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
         return np.zeros(found.shape[1:])
     beams = Fan(fan.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
@@ -268,6 +270,21 @@ def arriving_band(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float
     return float(k[min(last + 1, k.size - 1)])
 
 
+def cut_spectra(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float) -> np.ndarray:
+    """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
+    ends = checks.fan.spectrum_ends(s.k0)
+    ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
+    if not ends.size:
+        return ends
+    # spectra of edges have zeros: the last twentieth in front of each end stands for it
+    before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
+    k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
+    launched = np.max(np.abs(checks.fan.spectra(k, s.k0)) + np.abs(checks.fan.spectra(-k, s.k0)), axis=0)
+    size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+    at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
+    return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]
+
+
 #: Of more asked beams than this so many are judged, spread evenly over the angles; those between take the worse neighbour's error.
 JUDGED = 64
 
@@ -277,7 +294,7 @@ def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, 
     asked = checks.fan.asked
     if checks.fan.mix is None or asked.size <= JUDGED:
         return _difference(checks, one, two)
-    some = np.argsort(asked)[np.linspace(0, asked.size - 1, JUDGED).round().astype(int)]
+    some = checks.fan.spread(JUDGED)
     dark = None if checks.dark is None else checks.dark[some]
     part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=dark)
     error, edge = _difference(part, one, two)
@@ -288,11 +305,11 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
     fan = checks.fan
     (right1, left1), (right2, left2) = one.amplitudes, two.amplitudes
     x = checks.x - fan.beam.centre
-    # of asked angles that are mixed some are summed themselves too, in the same product
+    # some of the angles that are mixed are summed by themselves too, in the same product: the extremes, where mixing errs most
     some = np.empty(0, int)
     right, left = right1, left1
     if fan.mix is not None:
-        some = np.unique(np.linspace(0, fan.asked.size - 1, 5).round().astype(int))
+        some = fan.spread(5)
         pairs = zip(one.amplitudes, amplitudes(checks.k0, Fan(fan.beam, fan.asked[some]), one.line), strict=True)
         right, left = (np.concatenate(pair) for pair in pairs)
     own = np.asarray(paths.direct_sum(one.line, one.h, right, left, x))
@@ -310,15 +327,15 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
             mix = None if fan.mix is None else np.abs(fan.mix)
             edge, cut = (
                 _beyond(two, right2, left2),
-                _cut_off(checks.k0, fan, one, right1, left1, float(np.max(np.abs(x)))),
+                _cut_off(checks, one, right1, left1, float(np.max(np.abs(x)))),
             )
             first_edge = _beyond(one, right1, left1)
             edge, cut, first_edge = (v if mix is None else mix @ v for v in (edge, cut, first_edge))
             error += cut / scale
         if fan.mix is not None:
-            error += fan.tolerance + 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
+            error += 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
-    # both lines round the phases k x and kz z alike
+    # both lines share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase
     way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
     ends = np.max(np.where(seen, np.maximum(edge, first_edge) / scale, 0.0))
     return worst + paths.EPS * (4 + checks.k0 * way), float(ends)
@@ -347,6 +364,8 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Size of what lies beyond the end of a path: its last two tenths, continued geometrically; (B, Z)."""
+    if end.line.closed:
+        return np.zeros((right.shape[0], end.h.shape[0]))
     n, circles = end.line.k.size, end.line.circles
     tenth = max(1, (n - circles) // 10)
     tail = slice(max(circles, n - 2 * tenth), n)
@@ -356,12 +375,13 @@ def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     return 2 * last * ratio / (1 - ratio)
 
 
-def _cut_off(k0: float, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
+def _cut_off(checks: Checks, one: Sampled, right: np.ndarray, left: np.ndarray, extent: float) -> np.ndarray:
     """Size of what is missing where a spectrum ends inside a line (samples too coarse for their profile); (B, Z).
 
-    |w S h e^{ikx}| at the last node, times the nodes that would fit between it and the real axis, where the cut is defined.
+    |w S h e^{ikx}| at the last node or above it on the real axis, where the cut is defined, times the nodes that would fit between
+    them: on a long way along z waves below the axis have died when those on the axis have not.
     """
-    line = one.line
+    line, fan, k0 = one.line, checks.fan, checks.k0
     missing = np.zeros((right.shape[0], one.h.shape[0]))
     for side, amplitude in ((1, right), (-1, left)):
         beyond = fan.spectra(side * _after(line, line.k.size - 1), k0)
@@ -373,9 +393,9 @@ def _cut_off(k0: float, fan: Fan, one: Sampled, right: np.ndarray, left: np.ndar
             if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), k0).any():
                 continue
             step, depth = max(abs(line.k[j] - line.k[j - 1]), 1e-300), abs(line.k[j].imag)
-            missing[i] += (
-                np.abs(amplitude[i, j] * one.h[:, j]) * (1 + depth / step) * math.exp(min(depth * extent, 100))
-            )
+            below = np.abs(one.h[:, j]) * math.exp(min(depth * extent, 100))
+            on_axis = np.nan_to_num(np.abs(checks.transfer(np.array([line.k[j].real + 0j]), checks.z)[:, 0]))
+            missing[i] += np.abs(amplitude[i, j]) * np.maximum(below, on_axis) * (1 + depth / step)
     return missing
 
 

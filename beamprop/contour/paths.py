@@ -55,6 +55,7 @@ class Line(NamedTuple):
     sigma: Any = 0.0
     delta: Any = 0.0
     circles: int = 0
+    closed: bool = False  #: whether it ends where the spectra do: nothing lies beyond
 
 
 class Reach(NamedTuple):
@@ -271,7 +272,7 @@ def propagating_line(k0: float, breaks: list[float], count: int, dip: float = 0.
         stops = _towards_origin(even, min(sharp / k0, dip or math.inf) / (hi - lo)) if lo == 0 else even
         u = (stops[:-1, None] + np.diff(stops)[:, None] * (g + 1) / 2).ravel()
         w = (np.diff(stops)[:, None] * v / 2).ravel()
-        smooth, slope = _slow_ends(u, lo > 0, hi < edges[-1])
+        smooth, slope = slow_ends(u, lo > 0, hi < edges[-1])
         t = lo + (hi - lo) * smooth
         alpha, turn = _dipped(t, dip) if dip else (t, 1.0)
         k = k0 * np.sin(alpha)
@@ -294,7 +295,7 @@ def _towards_origin(stops: np.ndarray, sharp: float) -> np.ndarray:
     return np.concatenate([[0.0], stops[1] * 2.0 ** -np.arange(halvings, -1, -1), stops[2:]])
 
 
-def _slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
+def slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.ndarray]:
     """A map of (0, 1) to itself, and its slope, that goes as u^2 at the chosen ends."""
     if at_0 and at_1:
         return u * u * (3 - 2 * u), 6 * u * (1 - u)
@@ -336,9 +337,12 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
     block = max(1, MOST_PHASES // max(1, x.size))
     if line.k.size > block:
         parts = [slice(start, start + block) for start in range(0, line.k.size, block)]
-        sums = (direct_sum(Line(line.k[p], line.weight[p]), h[:, p], right[..., p], left[..., p], x) for p in parts)
+        sums = (
+            direct_sum(Line(line.k[p], line.weight[p], line.step), h[:, p], right[..., p], left[..., p], x)
+            for p in parts
+        )
         return functools.reduce(np.add, sums)
-    forth, back = _phases(line.k, x, bool(np.any(left)))
+    forth, back = _phases(line.k, x, bool(np.any(left)), line.step)
     if right.ndim == 1 and h.shape[0] > 2:
         both = right[:, None] * forth
         if back is not None:
@@ -394,12 +398,19 @@ def grid_of(x: np.ndarray) -> Grid:
 TABLE, STEP = 64, 32
 
 
-def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small."""
+def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[np.ndarray, np.ndarray | None]:
+    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
+
+    `dk` is the spacing of even nodes k, if they are.
+    """
     # plain: forth = exp(i k x), back = exp(-i k x)
     ik = 1j * k[:, None]
     grid = grid_of(x) if x.size >= TABLE else None
     if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
+        if dk and k.size >= TABLE:
+            coarse, fine = np.exp(ik[::STEP] * x), np.exp(1j * dk * np.arange(STEP)[:, None] * x)
+            forth = _inner(coarse, fine, k.size)
+            return forth, _inner(1 / coarse, 1 / fine, k.size) if both else None
         forth = np.exp(ik * x)
         return forth, 1 / forth if both else None
     starts = grid.start + grid.step * np.arange(0, x.size, STEP)
@@ -417,6 +428,11 @@ def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.nd
 def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
     out = coarse[:, :, None] * fine[:, None, :]
     return out.reshape(coarse.shape[0], -1)[:, :count]
+
+
+def _inner(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
+    out = coarse[:, None, :] * fine[None, :, :]
+    return out.reshape(-1, coarse.shape[1])[:count]
 
 
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:

@@ -1,7 +1,7 @@
 """The largest |p| of a plane where a first look did not expect it: far outside of the positions that are asked for.
 
 Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`judge`).
-What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
+What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands peak_outside. Where an error is above
 rtol the planes are therefore looked at once more, in a much wider window, with two shallow contours of low accuracy: a peak
 counts if both see it.
 """
@@ -37,7 +37,7 @@ def with_wider_look(s: SampledSlab, checks: Checks, reach: Reach, plan: BentPlan
     if two.nodes > MOST_WAVES:
         return checks
     asked = checks.fan.asked
-    some = np.argsort(asked)[np.unique(np.linspace(0, asked.size - 1, 5).round().astype(int))]
+    some = checks.fan.spread(5)
     beams = Fan(checks.fan.beam, asked[some])
     x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
     peaks = []

@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..modes import misplaced
-from ..modes.argument_principle import Box, TooManyModes
-from ..modes.guided import BESIDE, Mode
+from ..modes.argument_principle import Box, Dispersion, TooManyModes
+from ..modes.guided import BESIDE, Mode, dispersion_of
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab, on_the_right
 from . import residues
@@ -118,10 +118,24 @@ def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[Misplac
         for left, right in itertools.pairwise(ends):
             if right - left > 3 * BESIDE * right:
                 side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
-                here = misplaced.few_modes(s, Box(left, right, -away, away))
+                here = misplaced.few_modes(s, Box(left, right, -away, away), _without_growth)
                 found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
-    above = misplaced.with_circles(s, found[1])._replace(crossing=0.0)
-    return [misplaced.with_circles(s, found[-1]), above]
+    above, below = (misplaced.with_circles(s, found[side], of=_without_growth) for side in (1, -1))
+    return [below, above._replace(crossing=0.0)]
+
+
+def _without_growth(s: SampledSlab, loss: float) -> Dispersion:
+    """D of a periodic slab, made more lossy, over the growth of Bloch waves across it: an analytic function without zeros in a gap.
+
+    Of very many periods D turns as often as they do along any outline off the axis; what is left turns as the faces have it.
+    """
+    lossy, f = s.with_loss(loss), dispersion_of(s, loss)
+
+    def evaluate(kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        value, log = f(kx)
+        return value, log + 1j * lossy.bloch_phase_across(kx)[0]
+
+    return evaluate
 
 
 def met_at_branches(s: SampledSlab, parts: list[Stretch]) -> list[Stretch]:
@@ -133,9 +147,23 @@ def met_at_branches(s: SampledSlab, parts: list[Stretch]) -> list[Stretch]:
     return parts
 
 
-def _cut(part: Stretch, at: float, side: int) -> list[Stretch]:
+#: Of spectra that are not cut off.
+NO_ENDS = np.empty(0)
+
+
+def _cut(part: Stretch, at: float, side: int = 0) -> list[Stretch]:
     lo, hi, own = part
     return [Stretch(lo, at, own), Stretch(at, hi, own)] if lo < at < hi and own != side else [part]
+
+
+def met_at_ends(parts: list[Stretch], ends: np.ndarray) -> list[Stretch]:
+    """Stretches cut where spectra end: up to there they are analytic, and on the axis it is said where they end.
+
+    A contour that stayed off the axis would lack the way from it up to the axis, which is as large as the integrand.
+    """
+    for end in ends:
+        parts = [piece for part in parts for piece in _cut(part, float(end))]
+    return parts
 
 
 # --- the contour ------------------------------------------------------------------------------------------
@@ -158,9 +186,8 @@ def stretched_line(s: SampledSlab, parts: list[Stretch], plan: Plan, across: flo
     across, along : float, m
         Length of the path along x, and along z in the half-spaces, over which phases turn.
     """
-    parts = [part for part in parts if part.lo < plan.band]
     edges = np.concatenate(
-        [_edges(s, _corners(part, plan, part is parts[-1]), (across, along), plan.finer) for part in parts]
+        [_edges(s, _corners(part, plan), (across, along), plan.finer) for part in parts if part.lo < plan.band]
     )
     starts, stops = edges[:, 0], edges[:, 1]
     g, w = np.polynomial.legendre.leggauss(plan.nodes)
@@ -169,9 +196,9 @@ def stretched_line(s: SampledSlab, parts: list[Stretch], plan: Plan, across: flo
     return Line(k.ravel(), (half[:, None] * w).ravel() / (2 * math.pi))
 
 
-def _corners(part: Stretch, plan: Plan, last: bool) -> list[complex]:
-    """Where a stretch's contour turns: from the axis out, along it, and back, or on to the band's end."""
-    hi = plan.band if last else part.hi
+def _corners(part: Stretch, plan: Plan) -> list[complex]:
+    """Where a stretch's contour turns: from the axis out, along it, and back, or on to the band's end if the stretch goes so far."""
+    last, hi = part.hi >= plan.band, min(part.hi, plan.band)
     room = hi - part.lo if last else (hi - part.lo) / 2
     away = min(plan.height if part.side > 0 else plan.depth, 0.95 * room * plan.slope)
     turn, lift = away / plan.slope, 1j * part.side * away
@@ -208,7 +235,15 @@ def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def pair_of_lines(s: SampledSlab, reach: Reach, plan: Plan, start: float, crowded: bool) -> tuple[Line, Line] | None:
+def pair_of_lines(
+    s: SampledSlab,
+    reach: Reach,
+    plan: Plan,
+    start: float,
+    crowded: bool,
+    ends: np.ndarray = NO_ENDS,
+    closed: bool = False,
+) -> tuple[Line, Line] | None:
     """A contour in stretches and another to judge it by, circles around what they leave on the wrong side.
 
     Parameters
@@ -220,6 +255,8 @@ def pair_of_lines(s: SampledSlab, reach: Reach, plan: Plan, start: float, crowde
         Re kx from which poles are searched for.
     crowded : bool
         Whether the slab is periodic and guides more modes than can be found: its bands say where the contour passes.
+    ends : array, rad/m
+        |kx| where spectra are cut off; `closed` says whether all are, at the last of these or before.
 
     Returns
     -------
@@ -232,13 +269,16 @@ def pair_of_lines(s: SampledSlab, reach: Reach, plan: Plan, start: float, crowde
             bands = bands_of(s, end)
             parts, found = bands.parts, misplaced_in_gaps(s, bands, max(plan.depth, plan.height))
         else:
-            parts = [Stretch(0.0, math.inf, -1)]
             found = [misplaced.misplaced(s, 1.05 * plan.depth, end, start)]
+            crossing = found[0].crossing
+            parts = [Stretch(0.0, crossing, -1), *([Stretch(crossing, math.inf, 1)] if crossing < end else [])]
     except TooManyModes:
         return None
     if misplaced.UNCLEAR in found:
         return None
-    parts = met_at_branches(s, parts)
+    parts = met_at_ends(met_at_branches(s, parts), ends)
+    if closed:
+        parts = [part for part in parts if part.hi <= ends[-1]]
     across = max(reach.extent, reach.source)
     lines = []
     for second, p in ((False, plan), (True, plan.other())):
@@ -247,5 +287,5 @@ def pair_of_lines(s: SampledSlab, reach: Reach, plan: Plan, start: float, crowde
         around = sum(circled.circles for circled in both)
         k = np.concatenate([*(circled.k[: circled.circles] for circled in both), line.k])
         weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), line.weight])
-        lines.append(Line(k, weight, circles=around))
+        lines.append(Line(k, weight, circles=around, closed=closed))
     return lines[0], lines[1]

@@ -6,6 +6,7 @@ Everything here is for one frequency; a `SampledSlab` holds what does not change
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,6 @@ import numpy as np
 from ..arrays import exponentials
 from ..contour import error_estimate, paths
 from ..contour.choose import Solution, fft_is_cheaper
-from ..contour.paths import Line
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import Transfer
 from ..sources.angles import Fan, single
@@ -21,10 +21,10 @@ from ..sources.beams import Beam
 from .low_rank import cross, mixing
 
 
-def point_sum(s: SampledSlab, beam: Beam, line: Line, h: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """p(z, x) at any x by a matrix product."""
-    right, left = error_estimate.amplitudes(s.k0, single(beam), line)
-    return paths.direct_sum(line, h, right[0], left[0], x - beam.centre)
+def evaluator(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """p at any x on the one plane of h: plane waves are solved and their amplitudes formed once, whatever is asked then."""
+    right, left = solution.amplitudes_of(s.k0, single(beam))
+    return lambda at: np.asarray(paths.direct_sum(solution.line, h, right[0], left[0], at - beam.centre))[0]
 
 
 def beam_sum(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ trace of loss is added.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -76,12 +77,23 @@ def _checked(s: SampledSlab, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
     return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
 
 
-def located(s: SampledSlab, box: Box, total: int, many: float = math.inf, most: float = math.inf) -> list[complex]:
+#: D of a scene, made more lossy by some loss: `dispersion_of` or what has the same zeros in the boxes that are searched.
+DispersionOf = Callable[[SampledSlab, float], Dispersion]
+
+
+def located(
+    s: SampledSlab,
+    box: Box,
+    total: int,
+    many: float = math.inf,
+    most: float = math.inf,
+    of: DispersionOf = dispersion_of,
+) -> list[complex]:
     """The `total` zeros of a box, those of a lossless slab on the axis by changes of sign if that finds them all.
 
     TooManyModes where more than `many` have to be found otherwise, or it takes too long (`most`: see `zeros`).
     """
-    f = dispersion_of(s)
+    f = of(s, 0.0)
     if s.lossless and box.low < 0 < box.high:
         for samples in (600, 4800, 38_400):
             found = real_zeros(f, box.left, box.right, samples, 8 * many)
@@ -92,18 +104,18 @@ def located(s: SampledSlab, box: Box, total: int, many: float = math.inf, most: 
     return zeros(f, box, box.right, total, most)
 
 
-def told(s: SampledSlab, found: list[complex]) -> list[Mode]:
+def told(s: SampledSlab, found: list[complex], of: DispersionOf = dispersion_of) -> list[Mode]:
     """Zeros as modes, forward or backward."""
-    return [Mode(k, _direction(s, k, found.count(k) > 1), 0.0) for k in found]
+    return [Mode(k, _direction(s, k, found.count(k) > 1, of), 0.0) for k in found]
 
 
-def _direction(s: SampledSlab, k: complex, cluster: bool = False) -> int:
+def _direction(s: SampledSlab, k: complex, cluster: bool, of: DispersionOf) -> int:
     """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
     # a cluster is known to half the digits only, and takes more loss to be told
     blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
     if abs(k.imag) > blur * abs(k):
         return 1 if k.imag > 0 else -1
-    moved, _ = refine(dispersion_of(s, loss), k, 1e-4 * abs(k))
+    moved, _ = refine(of(s, loss), k, 1e-4 * abs(k))
     if cluster and abs((moved - k).imag) < blur * abs(k):
         raise TooManyModes
     return 1 if (moved - k).imag >= 0 else -1

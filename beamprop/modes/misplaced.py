@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..response.sampled_slab import SampledSlab, on_the_right
 from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
-from .guided import BESIDE, Mode, dispersion_of, located, told
+from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, told
 
 #: A mode nearer to the real axis than this, over k0, may be on either side by rounding: a layer without loss beside others with.
 ON_AXIS = 1e-10
@@ -63,16 +64,21 @@ def misplaced(s: SampledSlab, depth: float, band: float, start: float) -> Mispla
     if not s.may_guide_backward:
         return NONE
     s = s.up_to_wall()
-    try:
-        found = with_circles(s, _below(s, depth, band, start))
-    except TooManyModes:
-        found = UNCLEAR
+    found = _with_circles_alone(s, depth, band, start)
     if s.backward_branch is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
         return found
     try:
         return _with_crossing(s, depth, band, start) or found
     except TooManyModes:
         return found
+
+
+def _with_circles_alone(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles:
+    """Circles around the poles that a contour below the axis leaves above it; UNCLEAR where they are too many."""
+    try:
+        return with_circles(s, _below(s, depth, band, start))
+    except TooManyModes:
+        return UNCLEAR
 
 
 def _below(s: SampledSlab, depth: float, band: float, start: float) -> list[Mode]:
@@ -104,12 +110,14 @@ def _beside_cut(
     return found
 
 
-def with_circles(s: SampledSlab, found: list[Mode], others: tuple[complex, ...] = ()) -> MisplacedPoles:
+def with_circles(
+    s: SampledSlab, found: list[Mode], others: tuple[complex, ...] = (), of: DispersionOf = dispersion_of
+) -> MisplacedPoles:
     """Discs around the backward ones among some modes; `others` are misplaced too."""
     groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
     middles = tuple(sum(group) / len(group) for group in groups)
     all_of_them = [*(m.kx for m in found), *others]
-    discs = (_free_disc(s, k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
+    discs = (_free_disc(s, of(s, 0.0), k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
     return MisplacedPoles(middles, tuple(discs))
 
 
@@ -126,15 +134,15 @@ def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
-def few_modes(s: SampledSlab, box: Box) -> list[Mode]:
+def few_modes(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> list[Mode]:
     """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
-    total = winding(dispersion_of(s), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
+    total = winding(of(s, 0.0), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
-    found = located(s, box, total, MOST_WRONG, MOST_VALUES)
+    found = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
     if len(found) < total:
         raise TooManyModes
-    return told(s, found)
+    return told(s, found, of)
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
@@ -149,12 +157,12 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
     return groups
 
 
-def _free_disc(s: SampledSlab, k: complex, group: list[complex], others: list[complex]) -> float:
+def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], others: list[complex]) -> float:
     """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
     branches = (complex(on_the_right(b)) for b in s.branch_points)
     radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
-    f, circle = dispersion_of(s), np.exp(2j * np.pi * np.arange(24) / 24)
+    circle = np.exp(2j * np.pi * np.arange(24) / 24)
     least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))
     at_least = winding(f, k + least * circle, 1e-12 * abs(k), MOST_VALUES)
     while radius > least and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
@@ -252,20 +260,31 @@ def _found_above(s: SampledSlab, f: Dispersion, box: Box, total: int) -> tuple[c
     return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in found)
 
 
-#: Losses that are tried where poles cannot be told apart, relative to each density and modulus.
-REMEDIES = 10.0 ** np.arange(-6, 0)
-#: And shares of a contour's depth that are tried with them.
-SHALLOWER = (1.0, 0.1, 0.01)
+#: Losses among which one is named where poles cannot be told apart, relative to each density and modulus.
+REMEDIES = 10.0 ** np.arange(-6, 1)
 
 
-def enough_loss(s: SampledSlab, depth: float, band: float, start: float) -> float | None:
-    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does."""
-    for loss in REMEDIES:
-        lossy = s.with_loss(float(loss))
-        for share in SHALLOWER:
-            if misplaced(lossy, share * depth, band, start) is not UNCLEAR:
-                return float(loss)
-    return None
+def enough_loss(s: SampledSlab, depths: Sequence[float], band: float, start: float) -> float | None:
+    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does.
+
+    At one of some depths, those that the search for a contour would try, by circles alone: places for a crossing take ten times as
+    long to find. More loss moves more modes away from the axis: the largest is tried first, then the middle of those that are left.
+    """
+
+    def does(loss: float) -> bool:
+        lossy = s.with_loss(loss).up_to_wall()
+        return any(_with_circles_alone(lossy, depth, band, start) is not UNCLEAR for depth in depths)
+
+    if not does(float(REMEDIES[-1])):
+        return None
+    too_little, enough = -1, REMEDIES.size - 1
+    while enough - too_little > 1:
+        middle = (too_little + enough) // 2
+        if does(float(REMEDIES[middle])):
+            enough = middle
+        else:
+            too_little = middle
+    return float(REMEDIES[enough])
 
 
 # --- many frequencies -------------------------------------------------------------------------------------

@@ -10,6 +10,10 @@ import numpy as np
 #: Level of |p| at half maximum, by what the width is of.
 HALF_LEVEL = {"pressure": 0.5, "intensity": np.sqrt(0.5)}
 
+#: Positions by which the interval between two samples is looked at before the search inside; and how far the peak and the edges are
+#: known then, over the distance of the samples. |p| is flat at its peak: half the digits serve.
+SUBSAMPLES, PEAK_TOLERANCE, EDGE_TOLERANCE = 17, 1e-6, 1e-11
+
 Evaluate = Callable[[np.ndarray], np.ndarray]
 
 
@@ -62,12 +66,23 @@ def _peak(x: np.ndarray, size: np.ndarray, top: int, evaluate: Evaluate) -> tupl
     if top in (0, x.size - 1):
         return float(x[top]), float(size[top])
     lo, hi = float(x[top - 1]), float(x[top + 1])
-    for _ in range(6):
-        fine = np.linspace(lo, hi, 17)
-        values = np.abs(evaluate(fine))
-        best = int(np.clip(np.argmax(values), 1, 15))
-        lo, hi = float(fine[best - 1]), float(fine[best + 1])
+    from scipy.optimize import minimize_scalar
+
+    fine = np.linspace(lo, hi, SUBSAMPLES)
+    values = np.abs(evaluate(fine))
+    best = int(np.clip(np.argmax(values), 1, SUBSAMPLES - 2))
+    bounds = float(fine[best - 1]), float(fine[best + 1])
+    found = minimize_scalar(
+        lambda at: -_size(evaluate, at), bounds=bounds, method="bounded", options={"xatol": PEAK_TOLERANCE * (hi - lo)}
+    )
+    if -found.fun > values[best]:
+        return float(found.x), float(-found.fun)
     return float(fine[best]), float(values[best])
+
+
+def _size(evaluate: Evaluate, at: float) -> float:
+    """|p| at one position."""
+    return float(np.abs(evaluate(np.array([at])))[0])
 
 
 def _crossing(
@@ -82,13 +97,24 @@ def _crossing(
     if (position - inner) * step > 0:  # the peak lies beyond that sample
         inner = position
     outer = float(x[side[below[0]]])
-    for _ in range(9):  # each pass narrows 16 times: 16^9 = 7e10
-        fine = np.linspace(inner, outer, 17)
-        under = np.abs(evaluate(fine)) < target
-        under[0], under[-1] = False, True
-        first = int(np.argmax(under))
-        inner, outer = float(fine[first - 1]), float(fine[first])
-    return (inner + outer) / 2
+    from scipy.optimize import brentq
+
+    fine = np.linspace(inner, outer, SUBSAMPLES)
+    excess = np.nan_to_num(np.abs(evaluate(fine)) - target, nan=0.0)
+    # the ends are known to rounding: the sample within is above the level, the one beyond is below
+    excess[0], excess[-1] = max(excess[0], 0.0), min(excess[-1], -np.finfo(float).tiny)
+    first = int(np.argmax(excess < 0))
+    if excess[first - 1] == 0:
+        return float(fine[first - 1])
+    ends = {float(fine[i]): float(excess[i]) for i in (first - 1, first)}
+    return float(
+        brentq(
+            lambda at: ends[at] if at in ends else _size(evaluate, at) - target,
+            fine[first - 1],
+            fine[first],
+            xtol=EDGE_TOLERANCE * abs(outer - inner),
+        )
+    )
 
 
 def crossings(p: np.ndarray, target: float) -> int:

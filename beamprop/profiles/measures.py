@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import simpson
 
-from .. import memory
-from ..contour import choose, paths
+from ..contour import choose, error_estimate
 from ..fields import evaluate
 from ..response.sampled_slab import SampledSlab
 from ..sources.angles import single
 from ..sources.beams import Beam
-from . import fwhm, sections
+from . import fwhm, power, sections
+from .power import NOTHING, Radiated
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
 TAIL = 0.01
@@ -45,11 +45,12 @@ class Beamlet(NamedTuple):
 
 def reflected_and_transmitted(
     s: SampledSlab, beam: Beam, rtol: float, window: float | None
-) -> list[tuple[Beamlet, float]]:
-    """The reflected and the transmitted beam, each with the estimated error of its |p| over the largest."""
+) -> list[tuple[Beamlet, float, float]]:
+    """The reflected and the transmitted beam, each with the estimated errors of its |p| over the largest, and of its power."""
+    choose.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
-    launched = _power(s, beam, lambda kx: np.ones(kx.shape), False, s.k0)[0]
+    launched = _power(s, beam, _unchanged, False, rtol)
     out = []
     for transfer, place, behind in (
         (_reflected(s, beam.z0), ray, False),
@@ -59,20 +60,30 @@ def reflected_and_transmitted(
     return out
 
 
-#: kx (n,) -> h (n,)
-Face = Callable[[np.ndarray], np.ndarray]
+#: kx (n,), shift -> h (n,), at kx (1 + shift) and w (1 - shift): see `transfer_function`.
+Face = Callable[..., np.ndarray]
 
 
 def _launch(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
     return np.exp(-1j * s.kz_before(kx)[0] * z0)
 
 
+def _unchanged(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
+    return np.ones(kx.shape)
+
+
 def _reflected(s: SampledSlab, z0: float) -> Face:
-    return lambda kx: s.response(kx).r[0] * _launch(s, kx, z0)
+    return lambda kx, shift=0.0: _response(s.perturbed(shift), kx * (1 + shift), z0, "r")
 
 
 def _transmitted(s: SampledSlab, z0: float) -> Face:
-    return lambda kx: s.response(kx).t[0] * _launch(s, kx, z0)
+    return lambda kx, shift=0.0: _response(s.perturbed(shift), kx * (1 + shift), z0, "t")
+
+
+def _response(s: SampledSlab, kx: np.ndarray, z0: float, name: str) -> np.ndarray:
+    """r or t of plane waves launched on z0."""
+    h: np.ndarray = getattr(s.response(kx), name)[0]
+    return h * _launch(s, kx, z0)
 
 
 def _measure(
@@ -81,16 +92,16 @@ def _measure(
     face: Face,
     ray: float,
     behind: bool,
-    launched: float,
+    launched: Radiated,
     rtol: float,
     window: float | None,
-) -> tuple[Beamlet, float]:
+) -> tuple[Beamlet, float, float]:
     if not _any_beam(s, beam, face):
-        return NO_BEAM, 0.0
+        return NO_BEAM, 0.0, 0.0
     plane = np.array([s.thickness])
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return np.broadcast_to(face(kx * (1 + shift)), (z.size, kx.size))  # the beam at its face, whatever z
+        return np.broadcast_to(face(kx, shift), (z.size, kx.size))  # the beam at its face, whatever z
 
     for x in _windows(s, beam, ray, window):
         solution = choose.choose_line(s, single(beam), transfer, x, plane, rtol)
@@ -101,11 +112,11 @@ def _measure(
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
             break
-    between = _between(s, beam, solution.line, h)
+    between = evaluate.evaluator(s, beam, solution, h)
     full = fwhm.full_width(x, p, 0.5, between)
     e2 = fwhm.full_width(x, p, math.exp(-1), between)
     centroid, spread, part = _moments(x, size, window is not None)
-    power, mean, deviation = _power(s, beam, face, behind, s.largest_kx(behind))
+    radiated = _power(s, beam, face, behind, rtol)
     crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
     beamlet = Beamlet(
         full.width,
@@ -114,15 +125,15 @@ def _measure(
         centroid,
         centroid - ray,
         full.peak,
-        power / launched if launched > 0 else math.nan,
-        2 * deviation,
-        mean,
+        radiated.total / launched.total if launched.total > 0 else math.nan,
+        2 * radiated.deviation,
+        radiated.mean,
         crossings,
         float(x[part][0]),
         float(x[part][-1]),
         float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
     )
-    return beamlet, float(solution.error[0])
+    return beamlet, float(solution.error[0]), radiated.error + launched.error
 
 
 #: What is said of a side without a beam.
@@ -135,10 +146,6 @@ def _any_beam(s: SampledSlab, beam: Beam, face: Face) -> bool:
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
     return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
-
-
-def _between(s: SampledSlab, beam: Beam, line: paths.Line, h: np.ndarray) -> fwhm.Evaluate:
-    return lambda at: evaluate.point_sum(s, beam, line, h, at)[0]
 
 
 def _windows(s: SampledSlab, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:
@@ -175,21 +182,18 @@ def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float
     return float(centre), float(np.sqrt(integral(weight * (x - centre) ** 2, x=x) / total)), part
 
 
-def _power(s: SampledSlab, beam: Beam, face: Face, behind: bool, k: float) -> tuple[float, float, float]:
-    """Radiated power of S h [W/m, but for a constant], and mean and deviation of its direction [degree]."""
+def _power(s: SampledSlab, beam: Beam, face: Face, behind: bool, rtol: float) -> Radiated:
+    """What S h radiates into a half-space, but for a constant."""
+    k = s.largest_kx(behind)
     if k == 0:
-        return 0.0, math.nan, math.nan
-    extent = beam.reach(1e-6) + s.thickness - beam.z0
-    count = 200 + 2 * k * extent
-    memory.check_contour(count)
-    line = paths.propagating_line(k, s.real_branches, int(count))
-    admittance = s.admittance_after(line.k) if behind else s.admittance_before(line.k)
-    flux = np.abs(face(line.k)) ** 2 * admittance[0].real * line.weight
-    right, left = (flux * np.abs(beam.spectrum(sign * line.k, s.k0)) ** 2 for sign in (1, -1))
-    total = float((right + left).sum())
-    if not total > 0:
-        return 0.0, math.nan, math.nan
-    angle = np.degrees(np.arcsin(np.clip(line.k.real / k, -1, 1)))
-    mean = float(((right - left) * angle).sum()) / total
-    square = float((right * (angle - mean) ** 2 + left * (angle + mean) ** 2).sum()) / total
-    return total, mean, math.sqrt(square)
+        return NOTHING
+
+    def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        kx = kx.astype(complex)
+        admittance = (s.admittance_after(kx) if behind else s.admittance_before(kx))[0].real
+        h = face(kx, shift)
+        right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 * admittance for sign in (1, -1))
+        return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
+
+    count = 200 + 2 * k * (beam.reach(1e-6) + s.thickness - beam.z0)
+    return power.radiated(density, lambda kx: density(kx, error_estimate.SHIFT), k, s.real_branches, count, rtol)

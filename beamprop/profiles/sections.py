@@ -8,8 +8,10 @@ entire) is done again alone, with a window that grows until it holds the beam.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
+from dataclasses import is_dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +24,7 @@ from ..fields import evaluate as field_sums
 from ..modes import misplaced
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
+from ..response.transfer_function import FAINT as DARK
 from ..response.transfer_function import Transfer, shifts
 from ..sources.angles import single
 from ..sources.beams import Beam
@@ -70,8 +73,12 @@ def without(s: SampledSlab, distance: np.ndarray) -> Plane:
     return plane
 
 
-def landing(s: SampledSlab, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.ndarray]:
-    """Middle and half-width (F,) of windows that hold the beam, by stationary phase.
+#: From a way along z of so many 1/k0 on the window is found by `_far_landing`, and waves land at most so far to the side before.
+FAR = 1e4
+
+
+def landing(s: SampledSlab, beam: Beam, plane: Plane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width (F,) of windows that hold the beam after a way `path` (F,) along z, by stationary phase.
 
     The beam's strong plane waves span the window.
     """
@@ -84,8 +91,40 @@ def landing(s: SampledSlab, beam: Beam, plane: Plane) -> tuple[np.ndarray, np.nd
     least, most = shifts(low, high, small)
     if even:
         least, most = np.minimum(least, -most), np.maximum(most, -least)
-    least, most = (np.clip(v, -1e4 / s.k0, 1e4 / s.k0) for v in (least, most))
+    least, most = (np.clip(v, -FAR / s.k0, FAR / s.k0) for v in (least, most))
+    far = path > FAR / s.k0
+    if np.any(far):
+        least, most = (
+            np.where(far, *pair) for pair in zip(_far_landing(s, beam, plane, path), (least, most), strict=True)
+        )
     return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
+
+
+#: Plane waves by which a far field is looked at, and what share of the largest |p| the window of a far field holds.
+RAYS, BRIGHT = 401, 0.25
+
+
+def _far_landing(s: SampledSlab, beam: Beam, plane: Plane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the most shift (F,) along x of the rays that are bright where they land.
+
+    Rays part on a long way: |p| of a far field is |S h| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands (stationary
+    phase). Few are as bright as the strongest, so that the window is narrower than all the plane waves of the beam would span it.
+    """
+    lo, hi = (np.clip(v, -0.999 * s.k0, 0.999 * s.k0) for v in beam.band(s.k0, 1e-2))
+    k0, k = s.k0[:, None], np.linspace(lo, hi, RAYS, axis=-1)
+    small = np.minimum(1e-4 * k0, 0.01 * k0 / (1 + k0 * path[:, None]))  # phases turn little over a step
+    low, high = np.split(plane(np.concatenate([k - small, k + small], axis=-1).astype(complex)), 2, axis=-1)
+    twice = np.where(np.abs(low + high) > DARK, low + high, 1.0)
+    x = -np.imag((high - low) / (small * twice))
+    spread = np.abs(np.gradient(x, axis=-1)) / (np.maximum(hi - lo, 1e-6 * s.k0)[:, None] / (RAYS - 1))
+    strength = np.abs(low + high) * np.abs(beam.spectrum(k, k0))
+    size = strength / np.sqrt(spread + beam.reach(0.1) ** 2)
+    bright = size > BRIGHT * np.max(size, axis=-1, keepdims=True)
+    bright[:, 1:] |= bright[:, :-1]
+    bright[:, :-1] |= bright[:, 1:]
+    least, most = np.min(x, axis=-1, where=bright, initial=np.inf), np.max(x, axis=-1, where=bright, initial=-np.inf)
+    good = np.isfinite(least) & np.isfinite(most)
+    return np.where(good, least, 0.0), np.where(good, most, 0.0)
 
 
 #: Exponentials on an even line are products of two small tables, this many steps apart.
@@ -165,7 +204,8 @@ def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     out, good = _together(route, beam, rtol, level)
     for i in np.flatnonzero(~good):
         one = s.take(int(i))
-        found = _measured_alone(one, beam, route.transfer(one), float(route.z[i]), rtol, level, route.guided)
+        way = float(route.z[i]), float(route.path[i])
+        found = _measured_alone(one, beam, route.transfer(one), way, rtol, level, route.guided)
         for values, value in zip(out, found, strict=True):
             values[i] = value
     return out
@@ -184,7 +224,7 @@ def _together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Meas
     if not beam.entire:
         return out, good
     plane = route.plane(s, route.path)
-    middle, half = landing(s, beam, plane)
+    middle, half = landing(s, beam, plane, route.path)
     plan = _plan(s, beam, route.path, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
     if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
@@ -326,11 +366,16 @@ def _newton_level(
 
 
 def _measured_alone(
-    s: SampledSlab, beam: Beam, transfer: Transfer, z: float, rtol: float, level: float, guided: bool
+    s: SampledSlab, beam: Beam, transfer: Transfer, way: tuple[float, float], rtol: float, level: float, guided: bool
 ) -> tuple[float, float, float, int, float]:
-    """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level."""
-    planes = np.array([z])
-    middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], planes)))
+    """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level.
+
+    `way` is z and the length of the path along z.
+    """
+    planes, path = np.array([way[0]]), np.array([way[1]])
+    middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], planes), path))
+    choose.check_rays(s, beam, way[1], half)
+    seen: list[_Rim] = []
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
@@ -342,10 +387,45 @@ def _measured_alone(
         size = np.abs(p)
         if max(size[0], size[-1]) < EDGE * level * size.max():
             break
+        seen.append(_rim(size, level))
+        if guided and _runs_on(seen, s.lossless):
+            break
         half *= 2
-    evaluate = _between(s, beam, solution.line, h)
-    found = full_width(x, p, level, evaluate)
+    found = full_width(x, p, level, field_sums.evaluator(s, beam, solution, h))
     return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(solution.error[0])
+
+
+class _Rim(NamedTuple):
+    """What a window shows of a wave that runs on beyond it: the peak, the largest |p| in its outer tenths, and whether the level
+    is met on both sides of the peak."""
+
+    peak: float
+    outer: float
+    met: bool
+
+
+#: A guided wave is what still has this share of its |p| in the outer tenths of a window that is twice as wide: a beam in open space
+#: falls to 0.7 of it or less. The peak is the same one if it is within this share. And in so many windows more a wave without loss
+#: that lies above the level on one side is looked at before the width is said to have no end there.
+UNDIMINISHED, SAME, MORE = 0.9, 0.02, 3
+
+
+def _rim(size: np.ndarray, level: float) -> _Rim:
+    top, tenth = int(np.argmax(size)), max(1, size.size // 10)
+    below = size < level * size[top]
+    outer = max(size[:tenth].max(), size[-tenth:].max())
+    return _Rim(float(size[top]), float(outer), bool(np.any(below[:top]) and np.any(below[top:])))
+
+
+def _runs_on(seen: list[_Rim], lossless: bool) -> bool:
+    """Whether windows, each twice as wide as the one before, show the same peak and a guided wave beside it that no window holds."""
+    steady = [
+        abs(now.peak - before.peak) < SAME * now.peak and UNDIMINISHED * before.outer < now.outer < now.peak
+        for before, now in itertools.pairwise(seen)
+    ]
+    if all(rim.met for rim in seen[-2:]):
+        return steady[-1:] == [True]
+    return lossless and len(steady) >= MORE and all(steady[-MORE:])
 
 
 #: Plane waves below this share of the strongest do not show in widths, nor did they choose the positions.
@@ -360,10 +440,6 @@ def needed(s: SampledSlab, beam: Beam, solution: choose.Solution, h: np.ndarray,
     count = 2 * max(64, math.ceil((x[-1] - x[0]) * largest / np.pi)) + 1
     memory.check_terms(solution.line.k.size, min(count, x.size))
     return x if count >= x.size else np.linspace(x[0], x[-1], count)
-
-
-def _between(s: SampledSlab, beam: Beam, line: Line, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    return lambda at: field_sums.point_sum(s, beam, line, h, at)[0]
 
 
 # --- the row of a table of widths -------------------------------------------------------------------------
@@ -383,12 +459,14 @@ class Row(NamedTuple):
 def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
     """Widths at all frequencies of a slab, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
     wavelengths = 2 * np.pi / s.k0
+    # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
+    launched = replace(beam, z0=0.0) if is_dataclass(beam) else beam
 
     def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if not np.any(distance) and beam.entire:
             return _launch_widths(s, beam)
         route = Route(s.without_slab(), without, transfer_function.free, distance, distance, False)
-        found = measure(route, beam, rtol)
+        found = measure(route, launched, rtol)
         return found.width, found.crossings, found.error
 
     launch = free(np.zeros(s.k0.shape))

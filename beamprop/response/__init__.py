@@ -17,7 +17,7 @@ accuracy.py: r and t with estimated errors. bloch.py: infinite stacks.
 """
 
 from .bloch import bloch_error, bloch_wavenumber
-from .cell import cell_matrix
+from .cell import bloch_phase, cell_matrix
 from .conditioning import SHIFT, Checked, solve_checked
 from .layer import perturbed
 from .slab import Response, dispersion, solve
@@ -27,6 +27,7 @@ __all__ = [
     "Checked",
     "Response",
     "bloch_error",
+    "bloch_phase",
     "bloch_wavenumber",
     "cell_matrix",
     "dispersion",

@@ -6,13 +6,14 @@ their branch points; what it is made of they do not know. `FluidSlab` is the one
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from ..conventions import outgoing_kz
 from ..media.structures import FluidValues, LayerValues, SegmentValues, Slab, slab_values
-from .cell import cell_matrix
+from .cell import bloch_phase, cell_matrix
 from .conditioning import SHIFT
 from .layer import at_frequencies, perturbed
 from .slab import Response, dispersion, solve
@@ -82,6 +83,9 @@ class SampledSlab(Protocol):
     def half_trace(self, kx: np.ndarray, loss: float = 0.0) -> np.ndarray:
         """cos of the Bloch phase of one period without its own loss, but with `loss`; of a `periodic` slab."""
 
+    def bloch_phase_across(self, kx: np.ndarray) -> np.ndarray:
+        """Phase of a Bloch wave across all periods, with its decay as imaginary part; of a `periodic` slab."""
+
     def kz_before(self, kx: np.ndarray) -> np.ndarray:
         """kz of the medium in front [rad/m]."""
 
@@ -114,6 +118,13 @@ class SampledSlab(Protocol):
 
     def up_to_wall(self) -> SampledSlab:
         """It without what lies behind its first wall, at one frequency."""
+
+    def parts_between_walls(self) -> list[tuple[SampledSlab, int]]:
+        """The parts into which walls divide it off the normal, of one frequency, and how often each is there.
+
+        The first has the half-space in front, the last one that behind; the others are closed, have no branch point, and those of
+        a cell that is repeated are alike.
+        """
 
     def take(self, i: Any) -> SampledSlab:
         """Frequency i (an index: `k0` and branch points become numbers), or frequencies i (an array)."""
@@ -199,6 +210,11 @@ class FluidSlab(NamedTuple):
         with np.errstate(over="ignore"):
             return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))
 
+    def bloch_phase_across(self, kx: np.ndarray) -> np.ndarray:
+        """That of one period, times the periods."""
+        layers, periods = self.segments[0]
+        return periods * bloch_phase(cell_matrix(layers, self.omega, np.atleast_2d(kx) + 0j)).phase
+
     def kz_before(self, kx: np.ndarray) -> np.ndarray:
         """kz in front."""
         return outgoing_kz(kx, self.omega, *(v[:, None] for v in self.before))
@@ -272,9 +288,34 @@ class FluidSlab(NamedTuple):
         for i, (layers, _) in enumerate(self.segments):
             walls = np.flatnonzero(np.any(layers.vanishing, axis=1))
             if walls.size:
-                kept = LayerValues(*(v[: walls[0] + 1] for v in layers))
-                return self._replace(segments=[*self.segments[:i], SegmentValues(kept, 1)])
+                return self._replace(segments=[*self.segments[:i], _cut(self.segments[i], 0, walls[0] + 1)])
         return self
+
+    def parts_between_walls(self) -> list[tuple[SampledSlab, int]]:
+        """Layers of density 0 are soft walls, p = 0, on both sides. Each part keeps the walls that bound it."""
+        found: list[tuple[list[SegmentValues], int]] = []
+        current: list[SegmentValues] = []
+        for segment in self.segments:
+            walls = [int(i) for i in np.flatnonzero(np.any(segment.layers.vanishing, axis=1))]
+            if not walls:
+                current.append(segment)
+                continue
+            front, back = _cut(segment, 0, walls[0] + 1), _cut(segment, walls[-1], None)
+            found.append(([*current, front], 1))
+            found += [([_cut(segment, a, b + 1)], segment.periods) for a, b in itertools.pairwise(walls)]
+            if segment.periods > 1:
+                found.append(([back, front], segment.periods - 1))
+            current = [back]
+        if not found:
+            return [(self, 1)]
+        # of a half-space behind a wall nothing is felt, and its branch point is left out
+        unfelt = FluidValues(*np.ones((3, 1)))
+        closed = self._replace(before=unfelt, after=unfelt, branch_points=())
+        parts = [(closed._replace(segments=segments), n) for segments, n in found]
+        parts[0] = parts[0][0]._replace(before=self.before, branch_points=self.branch_points[:1]), 1
+        last = self._replace(segments=current, before=unfelt, branch_points=self.branch_points[1:])
+        parts.append((last, 1))
+        return [(part, n) for part, n in parts if not all(np.all(v.layers.vanishing) for v in part.segments)]
 
     def take(self, i: Any) -> FluidSlab:
         """Frequency i, or frequencies i."""
@@ -321,3 +362,8 @@ def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> Flu
 def on_the_right(branch: Any) -> Any:
     """Of the branch points b and -b the one with Re kx >= 0: it lies below the axis for a half-space of backward waves."""
     return np.where(np.real(branch) < 0, -branch, branch)
+
+
+def _cut(segment: SegmentValues, start: int, stop: int | None) -> SegmentValues:
+    """Some layers of a cell, once."""
+    return SegmentValues(LayerValues(*(v[start:stop] for v in segment.layers)), 1)

@@ -4,6 +4,8 @@ Away from its own plane, too, the field of a tilted source depends on the sine s
 the launch profile, |xi| <= reach: a function of s that a polynomial through a few Chebyshev nodes follows. So the fields at
 any number of angles are made, by a real matrix, of those at the nodes. The polynomial of r nodes errs by no more than
 2 (c/2)^r / r!, c = k0 reach (s_max - s_min)/2, of what the source sends (the next Bessel function of the Jacobi-Anger series).
+The error goes with s as the Chebyshev polynomial T_r, for what is left out, T_(r+j), looks like -T_(r-j) at the nodes, and
+T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`judge`).
 """
 
 from __future__ import annotations
@@ -23,7 +25,6 @@ class Fan(NamedTuple):
     angles: np.ndarray  #: (B,) degree
     mix: np.ndarray | None = None
     mixed_angles: np.ndarray | None = None  #: (A,) degree, those that `mix` makes
-    tolerance: float = 0.0  #: of the mixing
 
     @property
     def asked(self) -> np.ndarray:
@@ -41,6 +42,11 @@ class Fan(NamedTuple):
         """The beam at one angle."""
         return self.beam if angle == self.beam.angle else self.beam.at_angle(float(angle))
 
+    def spread(self, count: int) -> np.ndarray:
+        """Indices of `count` asked angles, or fewer, evenly through all of them in growing order: both extremes and some between."""
+        places = np.linspace(0, self.asked.size - 1, count).round().astype(int)
+        return np.argsort(self.asked)[np.unique(places)]
+
     def taken(self, asked: slice | np.ndarray) -> Fan:
         """Some of the asked beams."""
         if self.mix is None:
@@ -56,6 +62,13 @@ class Fan(NamedTuple):
         """|kx| below which all spectra are below `tolerance` of their largest value [rad/m]."""
         ends = [self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max())]
         return max(0.0, min(lo for lo, _ in ends), -max(hi for _, hi in ends))
+
+    def spectrum_ends(self, k0: float) -> np.ndarray:
+        """Every |kx|, in order, at which a spectrum is cut off inside its values [rad/m]: none for most sources."""
+        if getattr(self.beam, "spectrum_ends", None) is None:
+            return np.empty(0)
+        ends = [self.at(float(a)).spectrum_ends(k0) for a in self.angles]  # type: ignore[attr-defined]
+        return np.unique(np.abs(ends))
 
     def mixed(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
         """The asked fields (A, ...) of those that were summed (B, ...), complex."""
@@ -83,7 +96,7 @@ def fan(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> Fan:
         if count < 0.6 * angles.size:
             turn = np.pi * (np.arange(count) + 0.5) / count
             nodes = middle + half * np.cos(turn)
-            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles, tolerance)
+            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles)
     return Fan(beam, angles)
 
 

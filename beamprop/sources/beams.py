@@ -362,6 +362,11 @@ class Profile(_Tilted):
         lo, hi = self.band(0.0, tolerance)
         return (hi - lo) / 2 < (1 - 1e-9) * np.pi / self.spacing
 
+    def spectrum_ends(self, k0: float) -> tuple[float, float]:
+        """The interval of kx at whose ends the spectrum is cut off, whatever its value there [rad/m]."""
+        middle, half = k0 * float(sin_degrees(self.angle)), np.pi / self.spacing
+        return middle - half, middle + half
+
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""
         x = np.asarray(x, dtype=float)

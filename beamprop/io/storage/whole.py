@@ -101,11 +101,18 @@ def write_whole(path: str | Path, write: Callable[[Path], None]) -> None:
 
 
 def not_of_a_store(folder: Path, in_array: bool = False) -> Path | None:
-    """The first thing in a folder that is no part of a Zarr store; None for a store and for an empty folder."""
-    entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    """The first thing in a folder that is no part of a Zarr store; None for a store and for an empty folder.
+
+    A folder that another writer takes away meanwhile holds nothing.
+    """
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except FileNotFoundError:
+        return None
     kind = "array" if in_array else _node(folder, {entry.name for entry in entries})
     if entries and kind is None:
-        return folder
+        gone = not all(os.path.lexists(entry.path) for entry in entries)
+        return None if gone else folder
     for entry in entries:
         chunk = kind == "array" and _CHUNK.fullmatch(entry.name) is not None
         if entry.is_symlink():
