@@ -203,3 +203,17 @@ def test_a_table_without_a_place_is_refused(tmp_path):
     (tmp_path / "page.md").write_text("no marks\n", encoding="utf-8")
     with pytest.raises(SystemExit, match="expected one table named accuracy"):
         update_docs.main("accuracy", tmp_path / "page.md", tmp_path)
+
+
+def test_shares_of_time_are_those_of_functions_that_exist():
+    """Each stage of experiments/benchmarks/steps.py names a function of a file, and a row of the page."""
+    script = (CHECKOUT / "experiments" / "benchmarks" / "steps.py").read_text(encoding="utf-8")
+    page = (CHECKOUT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    stages = re.findall(r'"([^"]+)": \("([\w/]+\.py)", "(\w+)"\)', script)
+    assert len(stages) > 10
+    for stage, file, function in stages:
+        assert f"def {function}(" in (CHECKOUT / "beamprop" / file).read_text(encoding="utf-8"), stage
+        assert f"| {stage} |" in page
+    steps = re.findall(r'Step\("([^"]+)"', script)
+    assert len(steps) > 5
+    assert [step for step in steps if f"| {step} |" not in page] == []

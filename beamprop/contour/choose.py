@@ -29,7 +29,7 @@ FEWEST = 8
 
 
 def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
-    """Spacing of a grid that is even as far as an FFT needs it (see `spectral.grid_sum`), 0 for any other."""
+    """Spacing of a grid that is even as far as an FFT needs it (see `paths.grid_sum`), 0 for any other."""
     grid = paths.grid_of(x)
     moved = band * grid.unevenness
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
