@@ -4,6 +4,8 @@
 >>> slab = bp.Slab(bp.lmmd_cell(), periods=450)
 >>> widths = bp.beam_width(slab, bp.GaussianBeam(0.096), np.linspace(2000, 3000, 101))
 
+Examples in the docstrings of public names begin after ``import numpy as np, beamprop as bp``.
+
 Names are loaded when they are first used, so that ``import beamprop`` and ``beamprop --help`` are instant.
 """
 

@@ -14,7 +14,7 @@ import beamprop as bp
 ROOT = Path(bp.__file__).parent
 CHECKOUT = Path(__file__).parent.parent
 
-#: A module imports only from those before it. A new module takes its place here, and in the README's architecture.
+#: A module imports only from those before it. A new module takes its place here, and in docs/architecture.md.
 ORDER = [
     "_version",
     "conventions",
@@ -116,6 +116,12 @@ def test_data_flows_one_way(module):
         allowed = ONLY.get(module, before)
         assert allowed <= before
         assert own_imports(path) - {"_version"} <= allowed, path.name
+
+
+def test_the_documentation_lists_the_rooms_in_order():
+    """The table of docs/architecture.md is ORDER."""
+    text = (CHECKOUT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE) == ORDER
 
 
 def test_the_checker_sees_imports():
@@ -266,8 +272,8 @@ def shipped():
     inner = [path for top in tops for kind in kinds for path in sorted(top.rglob(kind))]
     return inner + [
         path
-        for path in (CHECKOUT / "README.md", CHECKOUT / "pyproject.toml", CHECKOUT / ".ci" / "run")
-        if path.exists()
+        for name in ("README.md", "CONTRIBUTING.md", "CITATION.cff", "pyproject.toml", ".ci/run")
+        if (path := CHECKOUT / name).exists()
     ]
 
 

@@ -23,7 +23,7 @@ EXCEPTIONS = {
 
 @pytest.mark.parametrize("figure", [fig2, fig3, fig4, fig5, fig5_fem, fig6], ids=lambda m: m.__name__)
 def test_figure(figure, tmp_path):
-    """Every panel computes and draws, and every statement comes out as the README's table says."""
+    """Every panel computes and draws, and every statement comes out as the table of docs/reproduction.md says."""
     import matplotlib.pyplot as plt
 
     data = figure.compute(quick=True)

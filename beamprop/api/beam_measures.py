@@ -75,6 +75,15 @@ def beam_measures(
         does not fall to a hundredth in the widest window that is tried, and none was given.
     AccuracyWarning
         The estimated error of a beam's |p|, over the largest, or of its power, over that power, is above rtol.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=20)
+    >>> ds = bp.beam_measures(slab, bp.GaussianBeam(0.3, angle=30), 2500.0)
+    >>> ds.side.values.tolist()
+    ['reflected', 'transmitted']
+    >>> bool(ds.power.sum("side") < 1)  # the rest is absorbed
+    True
     """
     validate.flag_or_function(progress, "progress")
     validate.instance(slab, Slab, "slab")

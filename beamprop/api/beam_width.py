@@ -57,6 +57,13 @@ def beam_width(
         The half level is not met inside the window (nan), or is met more than twice in one of the four planes.
     AccuracyWarning
         The estimated error of |p| in one of the planes is above rtol.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=450)
+    >>> ds = bp.beam_width(slab, bp.GaussianBeam(0.096), [2000, 2500])
+    >>> ds.fwhm_out.values.round(6)
+    array([0.089805, 0.097446])
     """
     validate.flag_or_function(progress, "progress")
     validate.instance(slab, Slab, "slab")

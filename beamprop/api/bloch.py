@@ -52,6 +52,12 @@ def bloch(
     ------
     ValueError
         Also for a cell with a layer of isotropic density 0 and kx other than 0: no finite limit.
+
+    Examples
+    --------
+    >>> ds = bp.bloch(bp.lmmd_cell(0.05, 0), 2500.0, kx_over_k0=[0, 5])
+    >>> ds.kz_over_k0.real.values.round(4)
+    array([0.7308, 0.7352])
     """
     validate.instance(cell, Cell, "cell")
     validate.instance(background, Fluid, "background")

@@ -13,7 +13,16 @@ from ..sources.beams import Beam, sin_degrees
 
 
 class AccuracyWarning(UserWarning):
-    """An answer whose estimated error is above the asked rtol."""
+    """An answer whose estimated error is above the asked rtol.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", bp.AccuracyWarning)  # from here on it is raised
+    ...     p = bp.field(slab, beam, 2500.0, x=0.0, z=slab.thickness)
+    """
 
 
 def warn_if_inaccurate(error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|") -> None:

@@ -65,6 +65,14 @@ def field(
     ------
     ValueError
         Names the argument, what was expected and what came; also for what does not fit into memory.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=450)
+    >>> beam = bp.GaussianBeam(fwhm=0.096, angle=45, z0=-0.1)
+    >>> ds = bp.field(slab, beam, 2500.0, x=np.linspace(-1, 1, 501), z=[0.0, slab.thickness])
+    >>> dict(ds.p.sizes), bool(ds.error_estimate < 1e-8)
+    ({'z': 2, 'x': 501}, True)
     """
     validate.flag_or_function(progress, "progress")
     question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)

@@ -27,6 +27,14 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
     DataArray
         In the units of `dim`, located on a cubic spline of the samples; nan with a warning where the half level is not
         reached inside the window, and a warning where it is met more than twice.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> x = np.linspace(-1, 1, 201)
+    >>> profile = xr.DataArray(np.exp(-((x / 0.2) ** 2)), {"x": x}, "x")
+    >>> round(float(bp.fwhm(profile)), 4)
+    0.333
     """
     validate.instance(profile, xr.DataArray, "profile")
     if not isinstance(dim, str) or dim not in profile.dims:

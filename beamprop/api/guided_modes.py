@@ -51,6 +51,12 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     ------
     ValueError
         Wrong arguments, or modes that were counted and not found.
+
+    Examples
+    --------
+    >>> ds = bp.guided_modes(bp.Slab(bp.lmmd_cell(0.05, 0), periods=20), 2500.0)
+    >>> int(ds["count"]) == ds.sizes["mode"]
+    True
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)

@@ -71,6 +71,14 @@ def save_field(
         Names the argument, what was expected and what came. A path that cannot be written is found before the work.
     OSError
         The system refused a write. Of a netCDF file the space is reserved before the work: a full disk is found then.
+
+    Examples
+    --------
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
+    >>> x, z = np.linspace(-1, 1, 201), np.linspace(0, 0.2, 50)
+    >>> rest = bp.save_field("map.nc", slab, beam, 2500.0, x, z, memory=2**16)  # 64 KiB at a time
+    >>> dict(bp.load("map.nc").p.sizes)
+    {'z': 50, 'x': 201}
     """
     path = validate.as_path(path)
     validate.flag_or_function(progress, "progress")

@@ -58,6 +58,13 @@ def scattering(
     ------
     ValueError
         Names the argument, what was expected and what came.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=450)
+    >>> ds = bp.scattering(slab, 2500.0, angle=[0, 45, 85])
+    >>> bool((ds.reflectivity + ds.energy_transmission <= 1).all())
+    True
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)

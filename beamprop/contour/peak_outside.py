@@ -1,7 +1,7 @@
 """The largest |p| of a plane where a first look did not expect it: far outside of the positions that are asked for.
 
-Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`judge`).
-What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands peak_outside. Where an error is above
+Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`error_estimate.survey`).
+What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
 rtol the planes are therefore looked at once more, in a much wider window, with two shallow contours of low accuracy: a peak
 counts if both see it.
 """

@@ -46,6 +46,12 @@ def plan(
     -------
     Plan
         dofs, elements_x, elements_z, memory [bytes], seconds; the last two within a factor of about two.
+
+    Examples
+    --------
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=2), bp.GaussianBeam(0.096)
+    >>> bp.fem.plan(slab, beam, 2500.0, period=1.0).elements_z
+    20
     """
     return predict(make_task(slab, beam, frequency, period, order, elements_x, method, layer_rows))
 
@@ -243,6 +249,14 @@ def field(
     -----
     On a busy machine set OPENBLAS_NUM_THREADS=1: threads that wait for each other cost several times more than
     they bring.
+
+    Examples
+    --------
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=2), bp.GaussianBeam(0.096)
+    >>> x, z = np.linspace(-0.4, 0.4, 41), [0.0, slab.thickness]
+    >>> ours = bp.field(slab, beam, 2500.0, x, z, boundary="periodic", period=1.0)
+    >>> bool(bp.compare(ours, bp.fem.field(slab, beam, 2500.0, x, z, period=1.0)).relative_l2 < 1e-3)
+    True
     """
     began = time.perf_counter()
     validate.flag_or_function(progress, "progress")

@@ -117,7 +117,15 @@ def make(
 
 
 def provenance(ds: xr.Dataset) -> dict[str, Any]:
-    """What a dataset records of its making, with slab, cell and beam rebuilt as objects."""
+    """What a dataset records of its making, with slab, cell and beam rebuilt as objects.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=20)
+    >>> ds = bp.scattering(slab, 2500.0, angle=0)
+    >>> bp.provenance(ds)["slab"] == slab
+    True
+    """
     validate.instance(ds, xr.Dataset, "ds")
     text = ds.attrs.get("provenance")
     if not isinstance(text, str):

@@ -120,6 +120,12 @@ def standard_emt(cell: Cell) -> Fluid:
     ------
     ValueError
         A layer has density 0, so that <1/rho> does not exist.
+
+    Examples
+    --------
+    >>> fluid = bp.standard_emt(bp.lmmd_cell(0.05, 0))
+    >>> round(float(fluid.at(2500.0).rho_z.real) / 1.25, 6)
+    0.05
     """
     return Fluid(
         _simplify(cell, CellMean(cell, "rho_z")),
@@ -129,7 +135,14 @@ def standard_emt(cell: Cell) -> Fluid:
 
 
 def lmmd_emt(cell: Cell) -> Fluid:
-    """The effective fluid of a rapidly and deeply modulated cell, the paper's Eq. (9): dispersive, rho_x infinite."""
+    """The effective fluid of a rapidly and deeply modulated cell, the paper's Eq. (9): dispersive, rho_x infinite.
+
+    Examples
+    --------
+    >>> fluid = bp.lmmd_emt(bp.lmmd_cell(0.05, 0))
+    >>> round(float(fluid.at(2500.0).rho_z.real) / 1.25, 5)
+    0.53388
+    """
     return Fluid(
         LmmdDensity(cell),
         _simplify(cell, CellMean(cell, "bulk_modulus", inverse=True)),
@@ -153,6 +166,13 @@ def lmmd_emt_slab(slab: Slab, interface: bool = True) -> Slab:
     -------
     Slab
         Of the same thickness and half-spaces.
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=80)
+    >>> T = [float(bp.scattering(s, 2500.0, angle=30).transmissivity) for s in (slab, bp.lmmd_emt_slab(slab))]
+    >>> bool(abs(T[1] / T[0] - 1) < 0.05)
+    True
     """
     validate.instance(slab, Slab, "slab")
     validate.flag(interface, "interface")

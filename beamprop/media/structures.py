@@ -71,6 +71,15 @@ class Fluid:
     ------
     ValueError
         NaN or infinite values, bulk_modulus 0, gain, or density_x = 0 beside another density.
+
+    Examples
+    --------
+    >>> water = bp.Fluid(1000.0, bulk_modulus=2.19e9)
+    >>> round(float(water.wavenumber(2500.0).real), 2)
+    10.61
+    >>> foam = bp.Fluid(lambda f: 2.0 + 500j / f, 1.2e5)  # by frequency [Hz], with loss
+    >>> foam.dispersive
+    True
     """
 
     density: Property
@@ -150,7 +159,13 @@ AIR = Fluid.from_speed(1.25, 343.0)
 
 @dataclass(frozen=True)
 class Layer:
-    """A homogeneous layer: a `Fluid` and its thickness [m]."""
+    """A homogeneous layer: a `Fluid` and its thickness [m].
+
+    Examples
+    --------
+    >>> bp.Layer(bp.AIR, thickness=0.01)
+    Layer(fluid=Fluid(density=1.25, bulk_modulus=147061), thickness=0.01)
+    """
 
     fluid: Fluid
     thickness: float
@@ -166,6 +181,14 @@ class Membrane:
 
     A limp membrane of `areal_density` kg/m2 (complex, or a function of frequency); the interface term of the
     effective medium is one, with a negative value on one face.
+
+    Examples
+    --------
+    >>> sheet = bp.Slab([bp.Membrane(0.3), bp.Layer(bp.AIR, 0.01)])
+    >>> T = float(bp.scattering(sheet, 1000.0, angle=0).transmissivity)
+    >>> mass_law = 1 / (1 + (2 * np.pi * 1000.0 * 0.3 / (2 * 1.25 * 343)) ** 2)
+    >>> bool(np.isclose(T, mass_law))
+    True
     """
 
     areal_density: Property
@@ -195,7 +218,14 @@ def _checked_layer(layer: Any) -> Layer | Membrane:
 
 @dataclass(frozen=True)
 class Cell:
-    """One period: layers from the near side to the far side."""
+    """One period: layers from the near side to the far side.
+
+    Examples
+    --------
+    >>> cell = bp.Cell((bp.Layer(bp.AIR, 0.02), bp.Membrane(0.3)))
+    >>> cell.thickness
+    0.02
+    """
 
     layers: tuple[Layer | Membrane, ...]
 
@@ -232,6 +262,14 @@ class Slab:
     -----
     ``a + b`` keeps a's `before` and b's `after`; what stood between them is gone. A stacked slab has several
     `segments`, pairs (cell, periods) from the near face on.
+
+    Examples
+    --------
+    >>> water = bp.Fluid.from_speed(1000.0, 1480.0)
+    >>> layers = bp.Slab([bp.Layer(bp.AIR, 0.02), bp.Layer(water, 0.01)], periods=3)
+    >>> stack = layers + bp.Slab.uniform(water, 0.05)
+    >>> round(stack.thickness, 6)
+    0.14
     """
 
     segments: tuple[tuple[Cell, int], ...]
@@ -334,6 +372,12 @@ def lmmd_cell(
     design_frequency : float, Hz
     background : Fluid
         Isotropic; evaluated at `design_frequency` if it is dispersive.
+
+    Examples
+    --------
+    >>> cell = bp.lmmd_cell(0.05, 0)  # without loss
+    >>> [round(layer.fluid.density.real / 1.25, 2) for layer in cell.layers][:3]
+    [60.05, 48.59, 18.59]
     """
     n_layers = as_count(n_layers, "n_layers")
     memory.check("n_layers", 1000.0 * n_layers, f"{n_layers:.3g} layers", "take fewer")

@@ -60,6 +60,13 @@ def field(
     Returns
     -------
     Axes
+
+    Examples
+    --------
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
+    >>> ds = bp.field(slab, beam, 2500.0, x=np.linspace(-0.5, 0.5, 101), z=np.linspace(0, 0.3, 61))
+    >>> ax = bp.plot.field(ds, quantity="real")
+    >>> ax.figure.savefig("field.png")
     """
     _need(ds, "p", "x", "z")
     validate.flag(colorbar, "colorbar")
@@ -137,6 +144,11 @@ def scattering(
     log : bool
     ax : Axes, optional
     label : str, optional
+
+    Examples
+    --------
+    >>> ds = bp.scattering(bp.Slab(bp.lmmd_cell(), periods=20), 2500.0, kx_over_k0=np.linspace(0, 5, 101))
+    >>> ax = bp.plot.scattering(ds, log=True)
     """
     validate.word(quantity, "quantity", "transmissivity", "reflectivity", "energy_transmission", "absorption")
     _need(ds, quantity)
@@ -175,6 +187,11 @@ def bloch(
         Draw the decay too.
     mirror : bool
         Draw -kz too, which belongs to the contour.
+
+    Examples
+    --------
+    >>> ds = bp.bloch(bp.lmmd_cell(), 2500.0, kx_over_k0=np.linspace(-10, 10, 101))
+    >>> ax = bp.plot.bloch(ds, mirror=True)
     """
     _need(ds, "kz_over_k0")
     for name, value in (("imaginary", imaginary), ("mirror", mirror)):
@@ -207,6 +224,11 @@ def width(ds: xr.Dataset, ax: Any = None, label: str | None = None) -> Any:
     ax : Axes, optional
     label : str, optional
         Before the names of the curves.
+
+    Examples
+    --------
+    >>> ds = bp.beam_width(bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096), [2000, 2500, 3000])
+    >>> ax = bp.plot.width(ds)
     """
     _need(ds, "fwhm_in", "fwhm_out", "fwhm_air")
     along = next((d for d in ("frequency", "angle") if d in ds.dims), None)

@@ -26,6 +26,13 @@ def comparison(cmp_ds: xr.Dataset, axes: Any = None) -> Any:
     -------
     Axes, or array of Axes
         Those that were drawn in.
+
+    Examples
+    --------
+    >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
+    >>> x, z = np.linspace(-0.4, 0.4, 81), np.linspace(0, slab.thickness, 21)
+    >>> one, two = (bp.field(s, beam, 2500.0, x, z) for s in (slab, bp.lmmd_emt_slab(slab, interface=False)))
+    >>> axes = bp.plot.comparison(bp.compare(one, two))
     """
     ds = _checked(cmp_ds)
     fields = [n for n in ("p_a", "p_b", "error") if n in ds]

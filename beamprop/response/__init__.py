@@ -8,12 +8,13 @@ One layer takes the state (p, q), q = (1/rho_z) dp/dz, from its near to its far 
     C = cos(sqrt(u)),  s = sin(sqrt(u))/sqrt(u):  entire in u, so kz = 0 is no special case and no branch is chosen.
 
 States are carried BACK from the outgoing wave at the far face, the direction in which the physical solution grows:
-nothing cancels, however thick the slab, unless the physical wave decays on the way back (behind negative layers: waves.py).
+nothing cancels, however thick the slab, unless the physical wave decays on the way back (behind negative layers: reflection.py).
 What grows is taken out and kept as a logarithm.
 
-layers.py: one layer. cells.py: a cell and its powers. march.py: the way back through a slab. inside.py: the field there.
-slab.py: what is asked of a slab. waves.py: r and t from the waves of each medium, for where the way back cancels.
-accuracy.py: r and t with estimated errors. bloch.py: infinite stacks.
+layer.py: one layer. cell.py: a cell and its powers. recursion.py: the way back through a slab. interior.py: the field there.
+slab.py: what is asked of a slab. reflection.py: r and t from the waves of each medium, for where the way back cancels.
+conditioning.py: r and t with estimated errors. bloch.py: infinite stacks. sampled_slab.py: a slab at given frequencies.
+transfer_function.py: what becomes of a plane wave in front of, inside and behind it.
 """
 
 from .bloch import bloch_error, bloch_wavenumber

@@ -61,7 +61,7 @@ def solve(
 
     Parameters
     ----------
-    segments : from `media.slab_values`, F frequencies
+    segments : from `media.structures.slab_values`, F frequencies
     before, after : properties of the half-spaces, arrays (F,)
     omega : (F, 1), rad/s
     kx : (F, n) complex, rad/m

@@ -121,6 +121,12 @@ class GaussianBeam(_Tilted):
     form : "launch" or "rotated"
         "launch": ``p(x, z0) = exp(-(x-x0)^2/a^2) exp(i k0 sin(angle) (x-x0))``, fwhm along the launch plane.
         "rotated": a beam whose waist lies at (x0, z0), across its own axis, made of propagating waves only.
+
+    Examples
+    --------
+    >>> beam = bp.GaussianBeam(fwhm=0.096, angle=45, z0=-0.1)
+    >>> round(beam.radius, 4)
+    0.0577
     """
 
     fwhm: float
@@ -234,6 +240,13 @@ class Profile(_Tilted):
     -----
     Between the samples the profile is its band-limited (Whittaker) interpolation: the spectrum is
     ``dx sum_j p_j exp(-i kx x_j)`` for ``|kx - k0 sin(angle)| <= pi/dx`` and 0 beyond.
+
+    Examples
+    --------
+    >>> x = np.linspace(-0.3, 0.3, 601)
+    >>> ring = bp.Profile(x, (1 - (x / 0.05) ** 2) * np.exp(-((x / 0.05) ** 2)), z0=-0.05)
+    >>> round(ring.spacing, 6)
+    0.001
     """
 
     x: np.ndarray
@@ -399,6 +412,12 @@ class Slits(_Tilted):
     """`count` slits, each `width` wide and driven in phase with 1 Pa, `separation` apart from middle to middle.
 
     The test of sub-wavelength imaging. Lengths in m; z0 <= 0 is the launch plane; `angle` [degree] tilts the phase.
+
+    Examples
+    --------
+    >>> slits = bp.Slits(width=0.01, separation=0.04, count=2, z0=-0.005)
+    >>> slits.positions
+    array([-0.02,  0.02])
     """
 
     width: float

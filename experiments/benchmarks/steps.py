@@ -51,32 +51,32 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "`field`, 1000 z × 1024 x": (
         field_map,
         {
-            "the choice of a line and its judgement": ("lines.py", "choose_line"),
-            "of it: modes on the wrong side": ("modes.py", "between"),
-            "of it: two lines compared": ("judge.py", "difference"),
-            "all planes, made of a few": ("propagate.py", "fill_map"),
-            "of it: which planes stand for all": ("planes.py", "cross"),
-            "of it: those planes summed": ("propagate.py", "fill"),
-            "the response, in both": ("transfers.py", "factors"),
-            "labels, provenance": ("maps.py", "dataset"),
+            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_line"),
+            "of it: poles on the wrong side": ("modes/misplaced.py", "misplaced"),
+            "of it: two contours compared": ("contour/error_estimate.py", "difference"),
+            "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
+            "of it: cross approximation": ("fields/low_rank.py", "cross"),
+            "of it: its planes summed": ("fields/evaluate.py", "fill"),
+            "the response, in both": ("response/transfer_function.py", "factors"),
+            "labels, provenance": ("api/field_question.py", "labelled"),
         },
     ),
     "1000 angles, exit plane": (
         angles,
         {
-            "the choice of a line and its judgement": ("lines.py", "choose_line"),
-            "fields at the nodes": ("spectral.py", "fft_sum"),
-            "all angles mixed from them": ("fan.py", "mixed"),
-            "labels, provenance": ("maps.py", "dataset"),
+            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_line"),
+            "fields at the nodes": ("contour/paths.py", "fft_sum"),
+            "angle interpolation": ("sources/angles.py", "mixed"),
+            "labels, provenance": ("api/field_question.py", "labelled"),
         },
     ),
     "`beam_width`, 101 frequencies": (
         widths,
         {
-            "windows, by stationary phase": ("sections.py", "landing"),
-            "modes on the wrong side": ("sections.py", "_backward"),
-            "lines and their response": ("sections.py", "_both_modes"),
-            "samples, peak, edges": ("sections.py", "_measured"),
+            "windows, by stationary phase": ("profiles/sections.py", "landing"),
+            "poles on the wrong side": ("profiles/sections.py", "_backward"),
+            "contours and their response": ("profiles/sections.py", "_both_modes"),
+            "samples, peak, edges": ("profiles/sections.py", "_measured"),
         },
     ),
 }
@@ -93,7 +93,11 @@ def shares(work: Work, stages: dict[str, tuple[str, str]], runs: int = 20) -> di
     stats: Any = pstats.Stats(profile)
     spent = {}
     for stage, (file, function) in stages.items():
-        rows = [v for (path, _, name), v in stats.stats.items() if path.endswith(file) and name == function]
+        rows = [
+            v for (path, _, name), v in stats.stats.items() if path.endswith(f"beamprop/{file}") and name == function
+        ]
+        if not rows:
+            raise LookupError(f"{stage}: expected a call of {function} in {file}, found none")
         spent[stage] = sum(v[3] for v in rows) / stats.total_tt
     return spent
 
@@ -112,10 +116,10 @@ class Step(NamedTuple):
 
 
 STEPS = [
-    Step("planes made of a few: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
-    Step("planes made of a few: air", air, evaluate, "MANY_PLANES", 10**9),
-    Step("angles mixed from a few nodes", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.Fan(beam, at)),
-    Step("straight lines and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
+    Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
+    Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", 10**9),
+    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.Fan(beam, at)),
+    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
     Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
     Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),

@@ -76,6 +76,16 @@ def read_comsol(
     -----
     UserWarning
         Combinations of parameters that are missing (NaN in the dataset), and everything that had to be assumed.
+
+    Examples
+    --------
+    >>> rows = ["% x (m)   y (m)   p (Pa) @ freq=2500", "0 0 1+2i", "1 0 3+4i", "0 1 5+6i", "1 1 7+8i"]
+    >>> with open("export.txt", "w") as file:
+    ...     for row in rows:
+    ...         print(row, file=file)
+    >>> ds = bp.read_comsol("export.txt")
+    >>> complex(ds.p.sel(x=0, z=0))  # conjugated
+    (1-2j)
     """
     _check_arguments(x, z, expression, conjugate, length_unit, angle_unit)
     source = scan(str(validate.as_path(path)))
@@ -101,6 +111,14 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     -------
     Dataset
         The same variables with dims (..., z, x); NaN outside the nodes' convex hull.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> nodes = {"x": ("node", [0.0, 1.0, 0.0, 1.0]), "z": ("node", [0.0, 0.0, 1.0, 1.0])}
+    >>> scattered = xr.Dataset({"p": ("node", [1.0, 2.0, 3.0, 4.0])}, nodes)
+    >>> float(bp.to_grid(scattered, x=[0.25, 0.75], z=[0.5, 0.6]).p[0, 0])
+    2.25
     """
     if not isinstance(ds, xr.Dataset) or "node" not in ds.dims:
         raise ValueError(f"ds: expected a dataset with the dim 'node', got {getattr(ds, 'dims', type(ds).__name__)}")

@@ -62,6 +62,13 @@ def save(ds: xr.Dataset, path: str | Path, *, split_complex: bool = False, compr
         Unknown ending, missing folder, a folder of other things in the way, or no Dataset.
     OSError
         The system refused a write (a full disk, say). What stood there is left as it was.
+
+    Examples
+    --------
+    >>> ds = bp.bloch(bp.lmmd_cell(), 2500.0, kx_over_k0=np.linspace(0, 5, 11))
+    >>> bp.save(ds, "contour.nc")
+    >>> bp.load("contour.nc").identical(ds)
+    True
     """
     if not isinstance(ds, xr.Dataset):
         raise ValueError(f"ds: expected a Dataset, got {type(ds).__name__}")
@@ -143,6 +150,12 @@ def load(path: str | Path) -> xr.Dataset:
     ValueError
         No such file, an unknown ending, or a file that is damaged, cut off, or of another kind: names it, the variable,
         and what is wrong.
+
+    Examples
+    --------
+    >>> bp.save(bp.scattering(bp.Slab(bp.lmmd_cell(), periods=20), 2500.0, angle=[0, 45]), "spectrum.nc")
+    >>> bp.load("spectrum.nc").sizes["angle"]
+    2
     """
     path = _path(path)
     ds = read_settled(path, _reader(_kind(path)))
