@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
@@ -88,7 +89,7 @@ def inputs(scratch):
 @pytest.mark.parametrize("words", commands())
 def test_commands_parse(words, inputs):
     """Every command and option exists and takes what is given to it."""
-    command = main.commands[words[0]]
+    command = main.get_command(click.Context(main), words[0])
     command.make_context(words[0], words[1:])
 
 

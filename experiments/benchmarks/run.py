@@ -160,7 +160,7 @@ def starts(options: argparse.Namespace) -> list[Row]:
     return [
         Row("`import beamprop`", load, "python's start", python, "≤ + 0.15 s", load - python <= 0.15),
         Row("`beamprop --help`", help_text, "python's start", python, "≤ + 0.15 s", help_text - python <= 0.15),
-        Row("`beamprop width --output --plot`, cold", ours, "its imports", limit, "≤ 1.5", ours <= 1.5 * limit),
+        Row("`beamprop beam_width --output --plot`, cold", ours, "its imports", limit, "≤ 1.5", ours <= 1.5 * limit),
     ]
 
 
