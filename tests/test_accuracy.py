@@ -55,7 +55,7 @@ def test_the_worst_of_mixed_angles_is_seen_wherever_it_is_asked_for():
     slab = bp.Slab.uniform(bp.AIR, 0.05, after=bp.Fluid.from_speed(1000.0, 34_300.0))
     beam, x, z = bp.Slits(0.05 * lam, 0.6 * lam, 2), np.linspace(-0.5, 0.5, 21), 0.05 + 5 * lam
     asked = np.degrees(np.arcsin(np.linspace(0, 1 / 1.2, 55)))
-    summed = angles.fan(beam, asked, 2 * np.pi / lam, 1e-7).angles
+    summed = angles.interpolate_angles(beam, asked, 2 * np.pi / lam, 1e-7).angles
     asked = np.insert(asked, [0, 14, 28, 41, 55], summed[[0, 2, 4, 5, -1]])
     found = bp.field(slab, beam, F, x, z, angle=asked, rtol=1e-3).isel(angle=-2)
     right = bp.field(slab, beam.at_angle(asked[-2]), F, x, z, rtol=1e-9)
@@ -137,22 +137,22 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
     allowed = 3 * float(window.error_estimate) + float(truth.error_estimate)
     assert np.abs(window.p - truth.p[: x.size]).max() < min(1e-8, allowed) * peak
     s = sampled_slab.sample(slab, F)
-    reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    reach = paths.Extent(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes = np.array([-20.0, slab.thickness])
     found = error_estimate.survey(
         s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
-    ).bright[0, 1]
+    ).peaks_outside[0, 1]
     assert 0.3 * peak < found < 1.1 * peak
 
 
 def test_a_beam_that_lands_in_the_window_is_not_looked_for():
     s = sampled_slab.sample(bp.Slab.uniform(bp.AIR, 0.1), F)
-    reach = paths.Reach(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
+    reach = paths.Extent(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes, x = np.array([0.0, 0.1]), np.linspace(-1, 1, 11)
     beam = bp.GaussianBeam(0.3, 30.0, z0=-1.0)
     assert not error_estimate.survey(
         s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
-    ).bright.any()
+    ).peaks_outside.any()
 
 
 @pytest.mark.parametrize("rtol", [1e-4, 1e-8])
@@ -209,11 +209,11 @@ def test_lower_accuracy_is_cheaper(loss, points):
     x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
     sizes = []
     for rtol in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
-        found = contour_choice.choose_line(
+        found = contour_choice.choose_contour(
             s, angles.single(bp.GaussianBeam(0.096, 30.0)), transfer_function.through(s, 0.0), x, z, rtol
         )
         assert found.error[0] <= rtol
-        sizes.append(found.line.k.size)
+        sizes.append(found.contour.k.size)
     assert sizes == sorted(sizes)
     assert sizes[0] < 0.6 * sizes[-1]
 
@@ -221,7 +221,7 @@ def test_lower_accuracy_is_cheaper(loss, points):
 @pytest.mark.parametrize("ask", [bp.beam_width, bp.beam_measures])
 def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
     """As `field` does: one category of warning, with the estimate."""
-    choose = contour_choice.choose_line
+    choose = contour_choice.choose_contour
 
     def worse(*args):
         solution = choose(*args)
@@ -318,7 +318,7 @@ def test_fields_of_many_waves_and_points_take_bounded_memory():
     k = np.linspace(0, 100, 5000).astype(complex)
     x = np.linspace(-1, 1, 999)
     h, right = np.exp(-k)[None], np.exp(-k / 10)
-    line = paths.Line(k, np.ones(k.size))
+    line = paths.Contour(k, np.ones(k.size))
     whole = (h * right) @ np.exp(1j * np.outer(k, x)) + (h * right) @ np.exp(-1j * np.outer(k, x))
     np.testing.assert_allclose(paths.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
 

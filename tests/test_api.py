@@ -224,7 +224,7 @@ def test_progress_wraps_the_work():
 
 def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
     """An estimate above rtol is reported in the dataset and warned of by a category of its own."""
-    choose = contour_choice.choose_line
+    choose = contour_choice.choose_contour
 
     def worse(*args):
         solution = choose(*args)

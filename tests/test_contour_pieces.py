@@ -7,7 +7,7 @@ from sided import BULK, K0, RHO, F
 import beamprop as bp
 from beamprop.contour import error_estimate, paths
 from beamprop.response.sampled_slab import sample
-from beamprop.sources.angles import Fan, single
+from beamprop.sources.angles import AngleInterpolation, single
 
 
 def test_a_grid_and_what_positions_are_off_it():
@@ -29,7 +29,7 @@ def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     grid = paths.grid_of(x)
     step = 2 * np.pi / (n * grid.step)
     k = step * np.arange(-20, 60) - 0.3j
-    line = paths.Line(k, np.ones(k.size), step, -20, 0.3, 1.0)
+    line = paths.Contour(k, np.ones(k.size), step, -20, 0.3, 1.0)
     h = rng.standard_normal((3, k.size)) + 0j
     right, left = rng.standard_normal((2, k.size)) + 0j
     turn = np.exp(1j * np.outer(k, x))
@@ -49,7 +49,7 @@ def test_a_graded_contour_integrates_what_is_sharp_at_the_origin(pole):
     from scipy.special import erfcx
 
     plan = paths.BentPlan(1.0, 60.0, 9.0, 1.0 / paths.SLOPE, sharp=pole / 2, grading=12.0)
-    found = half_line(paths.bent_line(plan), lambda k: 2 * pole / (pole**2 + k**2) * np.exp(-(k**2) / 2))
+    found = half_line(paths.bent_contour(plan), lambda k: 2 * pole / (pole**2 + k**2) * np.exp(-(k**2) / 2))
     assert found == pytest.approx(np.pi * erfcx(pole / np.sqrt(2)), rel=1e-10)
 
 
@@ -61,7 +61,7 @@ def test_a_contour_that_crosses_passes_poles_on_both_sides():
 
     plan = paths.BentPlan(0.6, 400.0, 18.0, 1.5, crossing=5.0, gap=1.0)
     straight = plan._replace(crossing=np.inf, gap=np.inf)
-    crossing, below = paths.bent_line(plan), paths.bent_line(straight)
+    crossing, below = paths.bent_contour(plan), paths.bent_contour(straight)
     assert np.all(crossing.k.imag[crossing.k.real < 3.5] < 0)
     assert np.all(crossing.k.imag[crossing.k.real > 6.5] > 0)
     near, far = 3.0, 7.0
@@ -76,7 +76,7 @@ def test_how_near_a_pole_lies_to_the_origin(distance):
     """A response with poles at +-distance exp(i pi/4): the search ends between a sixteenth of that and all of it."""
     beam, x, z = bp.GaussianBeam(0.5, 0, 0, -0.1), np.linspace(-1, 1, 31), np.array([0.1])
     s = sample(bp.Slab.uniform(bp.AIR, 0.1), F)
-    reach = paths.Reach(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
+    reach = paths.Extent(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
 
     def survey(square):
         def transfer(k, z, shift=0.0):
@@ -119,5 +119,5 @@ def test_a_wide_tilted_beam_has_no_plane_waves_near_the_normal():
     low = K0 / 2 - 2 / a * np.sqrt(np.log(1e12))
     assert single(beam).low(K0, 1e-12) == pytest.approx(low, rel=1e-6)
     assert single(beam.at_angle(-30)).low(K0, 1e-12) == pytest.approx(low, rel=1e-6)
-    assert Fan(beam, np.array([-30.0, 30.0])).low(K0, 1e-12) == 0
+    assert AngleInterpolation(beam, np.array([-30.0, 30.0])).low(K0, 1e-12) == 0
     assert single(beam.at_angle(0)).low(K0, 1e-12) == 0

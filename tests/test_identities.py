@@ -409,9 +409,9 @@ def test_pressure_and_velocity_are_continuous_at_every_face(slab):
 
 def line_and_sums():
     """An open line that fits an FFT of 720 points, a slab's response on it, and amplitudes on both sides of kx = 0."""
-    reach = paths.Reach(K0, K0, 2.2 * K0, 0.8, 0.2, 0.3)
+    reach = paths.Extent(K0, K0, 2.2 * K0, 0.8, 0.2, 0.3)
     n, dx = 720, 0.005
-    line = paths.open_line(paths.plan_open(reach, 1e-8)._replace(window=n * dx))
+    line = paths.straight_contour(paths.plan_straight(reach, 1e-8)._replace(window=n * dx))
     h = amplitudes(LOSSLESS, line.k, np.linspace(0.001, 0.05, 5))[2]
     beam = bp.GaussianBeam(0.05, 50.0, x0=0.1)
     return line, h, *paths.amplitudes(line, lambda k: beam.spectrum(k, K0), 0.1), (np.arange(240) - 130) * dx, n

@@ -330,7 +330,7 @@ def random_sum(rng):
     step = 2 * np.pi / (n * dx)
     k = step * (first + np.arange(size)) - 0.7j
     x = rng.uniform(-1, 0) + dx * np.arange(rng.integers(1, n + 1))
-    line = paths.Line(k, np.ones(size), step, first, 0.7, 1.0)
+    line = paths.Contour(k, np.ones(size), step, first, 0.7, 1.0)
     h, right, left = (
         rng.normal(size=s) + 1j * rng.normal(size=s) for s in ((int(rng.integers(1, 90)), size), size, size)
     )
@@ -371,9 +371,9 @@ def test_an_open_line(seed):
 
     rng = np.random.default_rng(seed)
     sigma, delta, window, band = rng.uniform(0.1, 15, 3), rng.uniform(1, 15, 3), rng.uniform(1, 5, 3), np.full(3, 150.0)
-    plans = [paths.OpenPlan(*(float(v[i]) for v in (sigma, delta, window, band))) for i in range(3)]
-    for plan in (paths.OpenPlan(sigma, delta, window, band), *plans):
-        line = paths.open_line(plan)
+    plans = [paths.StraightPlan(*(float(v[i]) for v in (sigma, delta, window, band))) for i in range(3)]
+    for plan in (paths.StraightPlan(sigma, delta, window, band), *plans):
+        line = paths.straight_contour(plan)
         d, w = (np.asarray(v)[..., None] for v in (plan.delta, plan.window))
         np.testing.assert_allclose(line.weight, erfc(-line.k / d) / 2 / w, rtol=1e-14)
 
@@ -384,7 +384,7 @@ def test_a_plan_has_come_to_rest(seed):
     rng = np.random.default_rng(seed)
     k, extent, source, path = (rng.uniform(*ends, 4) for ends in ((20, 80), (0.2, 3), (0.1, 0.5), (0.0, 5)))
     branch, rtol = k * rng.uniform(0.2, 1, 4), 10 ** rng.uniform(-11, -2)
-    found = paths.plan_open(paths.Reach(k, branch, 3 * k, extent, source, path), rtol)
+    found = paths.plan_straight(paths.Extent(k, branch, 3 * k, extent, source, path), rtol)
     decades, rounding = math.log(20 / rtol), max(2.0, math.log(rtol / (100 * paths.EPS)))
     Z, X = np.maximum(path, 1e-3 / k), np.maximum(extent, source)
     delta, sigma, window = branch / math.sqrt(decades), rounding / (X + 30 / k), X
@@ -423,14 +423,14 @@ def random_modes(rng):
     n = int(rng.integers(1, 60))
     k = ds[:, None] * (first + np.arange(n)) - 1j * sigma[:, None]
     right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
-    return sections.Modes(paths.Line(k, np.ones(k.shape), ds, first, sigma), right, left)
+    return sections.PlaneWaves(paths.Contour(k, np.ones(k.shape), ds, first, sigma), right, left)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_profile_and_its_slopes(seed):
     rng = np.random.default_rng(seed)
     modal, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
-    k = modal.line.k[:, None]
+    k = modal.contour.k[:, None]
     a = modal.right[:, None] * np.exp(1j * k * x[..., None])
     b = modal.left[:, None] * np.exp(-1j * k * x[..., None])
     wanted = ((a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1))
@@ -460,7 +460,7 @@ def test_spectra_of_many_angles_are_those_of_each(name):
     beam, rng = SOURCES[name], np.random.default_rng(3)
     angles, kx = rng.uniform(-89, 89, 7), rng.uniform(-300, 300, 50) - 3j * rng.random(50)
     wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, 45.0) for a in angles])
-    close(source_angles.Fan(beam, angles).spectra(kx, 45.0), wanted, rtol=1e-11)
+    close(source_angles.AngleInterpolation(beam, angles).spectra(kx, 45.0), wanted, rtol=1e-11)
 
 
 @pytest.mark.parametrize("name", SOURCES)
@@ -468,11 +468,11 @@ def test_many_angles_are_mixed_from_a_few(name):
     """A fan's spectra are, to the tolerance, the mixture of those at its nodes: at the ends and between."""
     beam, rng, k0 = SOURCES[name], np.random.default_rng(4), 45.0
     angles = np.concatenate([[-89.9, 89.9, 0.0], rng.uniform(-89.9, 89.9, 150)])
-    found = source_angles.fan(beam, angles, k0, 1e-12)
-    assert (found.mix is None) == (name in ("wide", "rotated", "coarse profile"))
+    found = source_angles.interpolate_angles(beam, angles, k0, 1e-12)
+    assert (found.weights is None) == (name in ("wide", "rotated", "coarse profile"))
     kx = np.linspace(-100, 100, 41) + 0j
     wanted = np.stack([beam.at_angle(float(a)).spectrum(kx, k0) for a in angles])
-    close(found.mixed(found.spectra(kx, k0)), wanted, rtol=3e-12 * angles.size)
+    close(found.interpolated_to(found.spectra(kx, k0)), wanted, rtol=3e-12 * angles.size)
 
 
 @pytest.mark.parametrize("x", [[0.1], np.linspace(-1, 1, 101)])
@@ -590,7 +590,7 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     """A line that leaves no room for them: every plane by itself, and no warning."""
     slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
-    choose = contour_choice.choose_line
+    choose = contour_choice.choose_contour
     monkeypatch.setattr(
         contour_choice, "choose_line", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
     )
@@ -600,13 +600,13 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
 def test_the_end_of_a_path_is_not_that_of_its_circles():
     """What lies beyond a band is judged by the path's last nodes, however strong the nodes around single modes are."""
     k = np.linspace(1, 50, 60).astype(complex)
-    line = paths.Line(k, np.ones(60))
-    with_circles = paths.Line(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
+    line = paths.Contour(k, np.ones(60))
+    with_discs = paths.Contour(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
     right = np.exp(-k / 2)[None]
     strong = np.concatenate([np.full((1, 400), 1e9 + 0j), right], axis=1)
     alone = error_estimate._beyond(error_estimate.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
     beside = error_estimate._beyond(
-        error_estimate.Sampled(with_circles, np.ones((1, 460)), (strong, strong)), strong, strong
+        error_estimate.Sampled(with_discs, np.ones((1, 460)), (strong, strong)), strong, strong
     )
     np.testing.assert_allclose(beside, alone, rtol=1e-12)
     assert alone > 0

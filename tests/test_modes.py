@@ -194,8 +194,8 @@ def test_wrong_side_would_be_seen():
     x, z = np.linspace(-0.3, 0.3, 13), np.array([0.01])
     transfer = transfer_function.through(s, 0.0)
     with_them, without = (
-        evaluate.evaluator(s, beam, chosen, transfer(chosen.line.k, z))(x)
-        for chosen in (choose.choose_line(s, single(beam), transfer, x, z, 1e-8, guided) for guided in (True, False))
+        evaluate.evaluator(s, beam, chosen, transfer(chosen.contour.k, z))(x)
+        for chosen in (choose.choose_contour(s, single(beam), transfer, x, z, 1e-8, guided) for guided in (True, False))
     )
     assert np.abs(with_them - without).max() > 0.05 * np.abs(with_them).max()
 

@@ -148,7 +148,7 @@ def test_a_contour_meets_the_axis_at_the_branch_points_on_its_other_side():
     assert [p.lo for p in both[1]] == pytest.approx([0.0, K0])
     plan = stretches.Plan(0.1 * K0, 0.05 * K0, 0.6, 2.5 * K0)
     for side, parts in zip((-1, 1), both, strict=True):
-        line = stretches.stretched_line(s, parts, plan, 1.0, 1.0)
+        line = stretches.stretched_contour(s, parts, plan, 1.0, 1.0)
         assert np.all(side * line.k.imag > 0)
         assert line.weight.sum() == pytest.approx((2.5 * K0 + 1j * line.k.imag[-1]) / (2 * np.pi), rel=1e-6)
         assert np.abs(line.k - parts[1].lo).min() < 1e-9 * K0

@@ -29,7 +29,7 @@ K0 = float(bp.AIR.wavenumber(F).real)
 def chosen(monkeypatch):
     """The solutions of every contour that is chosen."""
     found = []
-    choose = contour_choice.choose_line
+    choose = contour_choice.choose_contour
 
     def watched(*arguments, **options):
         found.append(choose(*arguments, **options))
@@ -70,8 +70,8 @@ def test_spectra_are_formed_once_for_all_positions(monkeypatch):
     beam = bp.Profile(np.linspace(-0.3, 0.3, 61), np.exp(-((np.linspace(-0.3, 0.3, 61) / 0.1) ** 2)))
     s = sample(bp.Slab.uniform(bp.AIR, 0.1), F)
     transfer, z = through(s, 0.0), np.array([0.1])
-    solution = contour_choice.choose_line(s, evaluate.single(beam), transfer, np.linspace(-1, 1, 31), z, 1e-8)
-    p = evaluate.evaluator(s, beam, solution, transfer(solution.line.k, z))
+    solution = contour_choice.choose_contour(s, evaluate.single(beam), transfer, np.linspace(-1, 1, 31), z, 1e-8)
+    p = evaluate.evaluator(s, beam, solution, transfer(solution.contour.k, z))
     monkeypatch.setattr(bp.Profile, "spectrum", None)
     assert np.all(np.isfinite(p(np.array([0.0, 0.1]))))
     assert np.all(np.isfinite(p(np.array([0.05]))))
@@ -110,7 +110,7 @@ def test_a_spectrum_that_is_cut_off_is_met_on_the_axis(chosen, z0, angle):
     want = on_the_axis(beam, slab, x, z)
     assert np.abs(ds.p.values - want).max() < 1e-8 * np.abs(want).max()
     assert float(ds.error_estimate) < 1e-8
-    assert max(solution.line.k.size for solution in chosen) < (8000 if z0 == 0 else 30_000)  # phases turn over 300 m
+    assert max(solution.contour.k.size for solution in chosen) < (8000 if z0 == 0 else 30_000)  # phases turn over 300 m
 
 
 def test_the_estimate_knows_what_many_angles_lack():
@@ -154,7 +154,7 @@ def test_the_way_to_the_slab_is_no_part_of_the_way_without_it(chosen):
     )
     assert float(far.fwhm_launch) == pytest.approx(float(near.fwhm_launch), rel=1e-9)
     assert float(far.fwhm_air) == pytest.approx(float(near.fwhm_air), rel=1e-9)
-    count = [solution.line.k.size for solution in chosen]
+    count = [solution.contour.k.size for solution in chosen]
     assert count[0] < 500
     assert max(count) > 5000  # at the slab
 
@@ -166,7 +166,7 @@ def test_a_rotated_beam_from_too_far_is_refused_before_the_work(chosen):
     for ask in (bp.beam_width, bp.beam_measures):
         with pytest.raises(ValueError, match=r"^z0: expected a way .* at most 600000 plane waves, got 4.2e\+04 m"):
             ask(slab, beam, F)
-    assert all(solution.line.k.size < 500 for solution in chosen)
+    assert all(solution.contour.k.size < 500 for solution in chosen)
 
 
 LOSSLESS = bp.Slab(bp.lmmd_cell(rho_m=0.05, delta_rho=0.0), 20)
@@ -188,7 +188,7 @@ def test_a_guided_wave_that_runs_on_widens_no_window(chosen):
     assert width == pytest.approx(
         x[below[below > top][0]] - x[below[below < top][-1]], abs=1e-3
     )  # the grid of both ends
-    windows = [solution for solution in chosen[:-1] if solution.line.k.imag.any()]
+    windows = [solution for solution in chosen[:-1] if solution.contour.k.imag.any()]
     assert len(windows) <= 5  # launch, near, far and air
 
 

@@ -13,15 +13,15 @@ import numpy as np
 from .. import memory
 from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
-from ..response.transfer_function import Transfer
-from ..sources.angles import Fan
+from ..response.transfer_function import TransferFunction
+from ..sources.angles import AngleInterpolation
 from ..sources.beams import Beam
 from . import error_estimate, paths, peak_outside, residues, stretches
 from .error_estimate import Checks
-from .paths import BentPlan, Line, Reach
+from .paths import BentPlan, Contour, Extent
 
 #: The most modes that a line may have, and how often a plan is widened before the asked rtol is given up.
-MOST_MODES = 200_000
+MOST_PLANE_WAVES = 200_000
 ATTEMPTS = 14
 
 
@@ -36,14 +36,14 @@ def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
 
 
-def _reach(s: SampledSlab, fan: Fan, x: np.ndarray, z: np.ndarray, rtol: float) -> Reach:
+def _reach(s: SampledSlab, sources: AngleInterpolation, x: np.ndarray, z: np.ndarray, rtol: float) -> Extent:
     tolerance = rtol * 1e-3
-    beam = fan.beam
+    beam = sources.beam
     source = beam.reach(tolerance)
     extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
-    band = min(fan.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
-    return Reach(s.k0, s.nearest_branch, band, max(extent, source), source, path)
+    band = min(sources.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
+    return Extent(s.k0, s.nearest_branch, band, max(extent, source), source, path)
 
 
 def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:
@@ -56,88 +56,88 @@ def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> flo
     return math.hypot(s.last_branch, math.log(1 / tolerance) / way) if way > 0 else math.inf
 
 
-class Solution(NamedTuple):
+class Quadrature(NamedTuple):
     """A line that serves, and the estimated relative error by asked angle."""
 
-    line: Line
+    contour: Contour
     error: np.ndarray
     fft: int = 0  #: FFT length if the line fits the asked even grid, else 0
     circles: bool = False  #: whether it has circles around backward modes
     amplitudes: tuple[np.ndarray, np.ndarray] | None = None  #: of the beams that it was chosen for
-    judged: np.ndarray | None = None  #: the planes on which the error was estimated
+    checked_planes: np.ndarray | None = None  #: the planes on which the error was estimated
 
-    def amplitudes_of(self, k0: float, fan: Fan) -> tuple[np.ndarray, np.ndarray]:
+    def amplitudes_of(self, k0: float, sources: AngleInterpolation) -> tuple[np.ndarray, np.ndarray]:
         """w S(k) and w S(-k) of the beams that are summed, about their middle: (B, n) each."""
-        if self.amplitudes is not None and self.amplitudes[0].shape[0] == fan.angles.size:
+        if self.amplitudes is not None and self.amplitudes[0].shape[0] == sources.angles.size:
             return self.amplitudes
-        return error_estimate.amplitudes(k0, fan, self.line)
+        return error_estimate.amplitudes(k0, sources, self.contour)
 
 
-def choose_line(
+def choose_contour(
     s: SampledSlab,
-    fan: Fan,
-    transfer: Transfer,
+    sources: AngleInterpolation,
+    transfer: TransferFunction,
     x: np.ndarray,
     z: np.ndarray,
     rtol: float,
     guided: bool = True,
-) -> Solution:
+) -> Quadrature:
     """The cheapest line on which the field keeps rtol, judged by a second line of other parameters.
 
     An even grid of many points gets a pair of straight lines for FFTs, judged by a bent path; any other a bent path, judged
     by a second one. `guided` says whether the transfer knows guided modes (none without a slab).
     """
-    reach = _reach(s, fan, x, z, rtol)
-    many = fan.mix is not None and fan.asked.size > error_estimate.JUDGED
-    points, planes = error_estimate.check_points(x, z, fan.beam.centre, reach.source, s.thickness, many)
+    reach = _reach(s, sources, x, z, rtol)
+    many = sources.weights is not None and sources.requested.size > error_estimate.ESTIMATED
+    points, planes = error_estimate.check_points(x, z, sources.beam.centre, reach.source, s.thickness, many)
     if z.size > planes.size:
-        planes = np.union1d(planes, error_estimate.darkest_planes(fan, s.k0, transfer, z))
-    seen = error_estimate.survey(s, fan, transfer, points, planes, reach, rtol)
-    checks = Checks(fan, s.k0, transfer, points, planes, guided, seen.bright, None)
-    return _chosen(s, checks, reach, seen, x, rtol)._replace(judged=planes)
+        planes = np.union1d(planes, error_estimate.darkest_planes(sources, s.k0, transfer, z))
+    seen = error_estimate.survey(s, sources, transfer, points, planes, reach, rtol)
+    checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
+    return _chosen(s, checks, reach, seen, x, rtol)._replace(checked_planes=planes)
 
 
 def _chosen(
-    s: SampledSlab, checks: Checks, reach: Reach, seen: error_estimate.Survey, x: np.ndarray, rtol: float
-) -> Solution:
-    if not checks.fan.beam.entire:
-        return _propagating_solution(s, checks, reach, rtol, seen)
+    s: SampledSlab, checks: Checks, reach: Extent, seen: error_estimate.Survey, x: np.ndarray, rtol: float
+) -> Quadrature:
+    if not checks.sources.beam.entire:
+        return _propagating_quadrature(s, checks, reach, rtol, seen)
     search = _Search(s, checks, reach, rtol, seen)
     if s.backward_branch is not None and checks.guided:
-        return _solution_in_stretches(search)
-    straight = None if search.too_wide() or search.ends.size else _straight_solution(search, x)
+        return _quadrature_in_stretches(search)
+    straight = None if search.too_wide() or search.ends.size else _straight_quadrature(search, x)
     if straight:
         return straight
-    bent = _bent_solution(search)
-    return bent if search.ends.size else _straight_solution(search, x) or bent
+    bent = _bent_quadrature(search)
+    return bent if search.ends.size else _straight_quadrature(search, x) or bent
 
 
 #: The most beams whose spectra's ends a contour meets on the axis.
 MOST_CUT = 8
 #: From how many plane waves on those nearer to the normal than a beam's own are left out.
-MANY_MODES = 20_000
+MANY_PLANE_WAVES = 20_000
 
 
 class _Search:
     """The search for a contour: what is known of the poles on its wrong side, and the plan that has come so far."""
 
-    def __init__(self, s: SampledSlab, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey) -> None:
+    def __init__(self, s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: error_estimate.Survey) -> None:
         self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
         self.noise, self.sharp = seen.noise, seen.sharp
         self.plan: BentPlan = self._planned(math.inf)
         if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
             self.reach = reach._replace(band=error_estimate.arriving_band(s, checks, reach, rtol * 1e-3))
             self.plan = self._planned(math.inf)
-        if self.plan.nodes > MANY_MODES:
-            low = checks.fan.low(s.k0, 1e-6 * rtol)
+        if self.plan.nodes > MANY_PLANE_WAVES:
+            low = checks.sources.low(s.k0, 1e-6 * rtol)
             if low > 0 and error_estimate.wide_enough(checks.transfer, checks.z, low, self.reach.band):
                 self.reach = self.reach._replace(low=low)
                 self.plan = self._planned(math.inf)
         self.found, self.searched = misplaced.NONE, 0.0 if checks.guided else math.inf
-        self.judged_by: BentPlan | None = None  # the last plan by which a straight line was judged
+        self.checked_by: BentPlan | None = None  # the last plan by which a straight line was judged
 
         self.ends = np.empty(0)  # where spectra are cut off that matter
-        if checks.fan.asked.size <= MOST_CUT:
+        if checks.sources.requested.size <= MOST_CUT:
             self.ends = error_estimate.cut_spectra(s, checks, self.reach, 0.1 * rtol)
 
     def _planned(self, deepest: float) -> BentPlan:
@@ -145,7 +145,7 @@ class _Search:
 
     def too_wide(self) -> bool:
         """Whether the present plan takes too many plane waves."""
-        return self.plan.other().nodes > MOST_MODES
+        return self.plan.other().nodes > MOST_PLANE_WAVES
 
     @property
     def start(self) -> float:
@@ -165,7 +165,7 @@ class _Search:
         plan = self._planned(math.inf)
         # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
         shallower = [plan, *(self._planned(plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81))]
-        depths = [1.05 * p.depth for p in shallower if p is plan or p.other().nodes < MOST_MODES / 4]
+        depths = [1.05 * p.depth for p in shallower if p is plan or p.other().nodes < MOST_PLANE_WAVES / 4]
         loss = misplaced.enough_loss(self.scene, depths, 1.15 * plan.band, self.start)
         remedy = (
             ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"
@@ -186,12 +186,12 @@ class _Search:
             self.plan = self._planned(0.5 * gap)._replace(band=self.plan.band)
         self.plan = self.plan._replace(crossing=self.found.crossing, gap=gap)
 
-    def lines(self) -> tuple[Line, Line]:
+    def contours(self) -> tuple[Contour, Contour]:
         """The path of the present plan and a second one to judge it by, circles around what they leave on the wrong side."""
         reach = self.reach
         one, two = (
             residues.add_residues(
-                self.scene, paths.bent_line(p), self.found, max(reach.extent, reach.source), reach.path, bool(i)
+                self.scene, paths.bent_contour(p), self.found, max(reach.extent, reach.source), reach.path, bool(i)
             )
             for i, p in enumerate((self.plan, self.plan.other()))
         )
@@ -203,16 +203,16 @@ class _Search:
         self.searched = 0.0
 
 
-def _bent_solution(search: _Search) -> Solution:
+def _bent_quadrature(search: _Search) -> Quadrature:
     """Widen the window, or the band where its edge is what is missing, until two bent paths agree.
 
     Errors are over the largest |p| of each plane. Where that lies far outside of the window, what is asked for is still made as
     right by its own size as some thousand plane waves make it.
     """
     s, checks, rtol = search.scene, search.checks, search.rtol
-    best: Solution | None = None
+    best: Quadrature | None = None
     shrinks = 2 if s.lossless else 6  # on the axis itself their number does not fall
-    in_vain, asked = 0, None
+    in_vain, requested = 0, None
     for _ in range(ATTEMPTS):
         if search.too_wide():
             break
@@ -228,22 +228,22 @@ def _bent_solution(search: _Search) -> Solution:
             best = _in_stretches(search).best
             if best is not None and best.error.max() <= rtol:
                 return best
-        line, second = search.lines()
-        one, two = error_estimate.sampled(checks, line, False), error_estimate.sampled(checks, second, True)
+        contour, second = search.contours()
+        one, two = error_estimate.sampled(checks, contour, False), error_estimate.sampled(checks, second, True)
         error, edge = error_estimate.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
             checks = error_estimate.with_dark_planes(checks)
             error, edge = error_estimate.difference(checks, one, two)
         if error.max() > rtol and best is not None:  # a wider window alone did not do
-            if asked is None:
-                asked, checks = checks, peak_outside.with_wider_look(s, checks, search.reach, plan, found)
+            if requested is None:
+                requested, checks = checks, peak_outside.with_wider_look(s, checks, search.reach, plan, found)
             error, edge = error_estimate.difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
-            best = Solution(line, error, circles=bool(found.poles), amplitudes=one.amplitudes)
+            best = Quadrature(contour, error, circles=bool(found.poles), amplitudes=one.amplitudes)
         in_vain = in_vain + 1 if stuck else 0
-        if error.max() <= rtol and asked is not None:
-            return _good_by_itself(search, asked, best)
+        if error.max() <= rtol and requested is not None:
+            return _good_by_itself(search, requested, best)
         if error.max() <= rtol or in_vain > 3:
             break
         if edge > 0.3 * rtol:
@@ -255,7 +255,7 @@ def _bent_solution(search: _Search) -> Solution:
             search.plan = plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
     if best is None and search.found is misplaced.UNCLEAR:
         if s.periodic:
-            return _solution_in_stretches(search)
+            return _quadrature_in_stretches(search)
         raise ValueError(search.refusal())
     if best is None:
         raise ValueError(_too_many(rtol))
@@ -266,23 +266,23 @@ def _bent_solution(search: _Search) -> Solution:
 WIDENED, MOST_WIDENED = 5, 5_000
 
 
-def _good_by_itself(search: _Search, checks: Checks, best: Solution) -> Solution:
+def _good_by_itself(search: _Search, checks: Checks, best: Quadrature) -> Quadrature:
     """Widen a contour that serves by the plane's peak far outside of the window until it serves by the largest |p| inside, if it
     soon does."""
     before = math.inf
     for _ in range(WIDENED):
-        line, second = search.lines()
-        one, two = error_estimate.sampled(checks, line, False), error_estimate.sampled(checks, second, True)
+        contour, second = search.contours()
+        one, two = error_estimate.sampled(checks, contour, False), error_estimate.sampled(checks, second, True)
         error, edge = error_estimate.difference(checks, one, two)
         size = float(error.max())
         if size <= search.rtol:
-            return Solution(line, error, circles=bool(search.found.poles), amplitudes=one.amplitudes)
+            return Quadrature(contour, error, circles=bool(search.found.poles), amplitudes=one.amplitudes)
         plan = search.plan
         more = 1.5 * math.log(min(size, 1e6) / (0.1 * search.rtol)) / plan.depth
         if (size < 1 and size > 0.1 * before) or edge > 0.3 * search.rtol:
             break
         if size < before:
-            best = best._replace(line=line, circles=bool(search.found.poles), amplitudes=one.amplitudes)
+            best = best._replace(contour=contour, circles=bool(search.found.poles), amplitudes=one.amplitudes)
         before, search.plan = size, plan._replace(window=plan.window + more)
         if search.plan.other().nodes > MOST_WIDENED:
             break
@@ -291,7 +291,7 @@ def _good_by_itself(search: _Search, checks: Checks, best: Solution) -> Solution
 
 def _too_many(rtol: float) -> str:
     return (
-        f"rtol: {rtol:g} needs more than {MOST_MODES} plane waves for this source and window (the spectrum of a sharp "
+        f"rtol: {rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
         "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
         "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
     )
@@ -304,11 +304,11 @@ TRIES_IN_STRETCHES = 7
 class _Tried(NamedTuple):
     """The best of the contours in stretches that were tried, if any served, and whether poles were unclear."""
 
-    best: Solution | None
+    best: Quadrature | None
     unclear: bool
 
 
-def _solution_in_stretches(search: _Search) -> Solution:
+def _quadrature_in_stretches(search: _Search) -> Quadrature:
     """A contour in stretches, or the refusal of a question for which there is none."""
     best, unclear = _in_stretches(search)
     if best is None:
@@ -322,20 +322,20 @@ def _in_stretches(search: _Search) -> _Tried:
     """Shorten the panels, or widen the band where its edge is what is missing, until two contours in stretches agree."""
     s, checks, rtol, ends = search.scene, search.checks, search.rtol, search.ends
     plan = stretches.plan_stretches(search.reach, search.reach.path - s.thickness, rtol, search.noise)
-    closed = bool(ends.size) and bool(ends[-1] == np.max(checks.fan.spectrum_ends(s.k0)))
+    closed = bool(ends.size) and bool(ends[-1] == np.max(checks.sources.spectrum_ends(s.k0)))
     if closed:
         plan = plan._replace(band=1.01 * float(ends[-1]))
     best, unclear, in_vain = None, False, 0
     for _ in range(TRIES_IN_STRETCHES):
         crowded = search.found is misplaced.UNCLEAR
-        pair = stretches.pair_of_lines(s, search.reach, plan, search.start, crowded, ends, closed)
+        pair = stretches.pair_of_contours(s, search.reach, plan, search.start, crowded, ends, closed)
         if pair is None:
             plan, unclear = plan._replace(depth=plan.depth / 3, height=plan.height / 3), True
             continue
-        if max(line.k.size for line in pair) > MOST_MODES:
+        if max(contour.k.size for contour in pair) > MOST_PLANE_WAVES:
             break
         one, two = (
-            error_estimate.sampled(checks, line, moved) for line, moved in zip(pair, (False, True), strict=True)
+            error_estimate.sampled(checks, contour, moved) for contour, moved in zip(pair, (False, True), strict=True)
         )
         error, edge = error_estimate.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
@@ -343,7 +343,7 @@ def _in_stretches(search: _Search) -> _Tried:
             error, edge = error_estimate.difference(checks, one, two)
         in_vain = in_vain + 1 if best is not None and error.max() > 0.5 * best.error.max() else 0
         if best is None or error.max() < best.error.max():
-            best = Solution(pair[0], error, circles=True, amplitudes=one.amplitudes)
+            best = Quadrature(pair[0], error, circles=True, amplitudes=one.amplitudes)
         if error.max() <= rtol or in_vain > 1:
             break
         wider = 1.5 if edge > 0.3 * rtol else 1.0
@@ -357,29 +357,29 @@ def _in_stretches(search: _Search) -> _Tried:
 TRIES = ((0.78, 1.0), (0.9, 1.0), (1.0, 1.4))
 
 
-def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
+def _straight_quadrature(search: _Search, x: np.ndarray) -> Quadrature | None:
     """Straight lines for an FFT where that is cheaper than a matrix product over the bent path, and as good.
 
     They are judged by the second bent path of the present plan, once for each plan.
     """
     checks, rtol, plan = search.checks, search.rtol, search.plan
     dx = spacing_for_fft(x, plan.band, rtol)
-    if not dx or search.judged_by == plan or plan.grading or plan.low:
+    if not dx or search.checked_by == plan or plan.grading or plan.low:
         return None
-    search.judged_by = plan
+    search.checked_by = plan
     size, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
-        straight = paths.plan_open(search.reach, rtol, tighten, search.noise)
+        straight = paths.plan_straight(search.reach, rtol, tighten, search.noise)
         n = paths.fast_length(max(math.ceil(share * straight.window / dx), x.size))
         if not fft_is_cheaper(n, size, x.size) or _is_misplaced(search.look()):
             return None
         if second is None:
-            second = error_estimate.sampled(checks, search.lines()[1], True)
-        line = paths.open_line(straight._replace(window=n * dx))
-        first = error_estimate.sampled(checks, line, False)
+            second = error_estimate.sampled(checks, search.contours()[1], True)
+        contour = paths.straight_contour(straight._replace(window=n * dx))
+        first = error_estimate.sampled(checks, contour, False)
         error, _ = error_estimate.difference(checks, first, second)
         if error.max() <= rtol:
-            return Solution(line, error, n, amplitudes=first.amplitudes)
+            return Quadrature(contour, error, n, amplitudes=first.amplitudes)
     return None
 
 
@@ -397,7 +397,7 @@ def fft_is_cheaper(n: int, modes: float, points: int) -> bool:
 DEEPEST_DIP = 0.3
 
 
-def _dip(s: SampledSlab, reach: Reach, rtol: float, sharp: float) -> float:
+def _dip(s: SampledSlab, reach: Extent, rtol: float, sharp: float) -> float:
     """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
     growth = min(paths.DEEPEST, max(0.0, math.log(rtol / (100 * paths.EPS))))
     dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
@@ -426,35 +426,35 @@ def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
         )
 
 
-def _propagating_solution(
-    s: SampledSlab, checks: Checks, reach: Reach, rtol: float, seen: error_estimate.Survey
-) -> Solution:
+def _propagating_quadrature(
+    s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: error_estimate.Survey
+) -> Quadrature:
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes, on contours that dip differently, agree."""
     count = _rays(reach.k0, reach.extent + reach.path)
     dip = _dip(s, reach, rtol, seen.sharp) if checks.guided else 0.0
     for _ in range(6):
-        memory.check_contour(1.4 * count, checks.fan.angles.size, checks.z.size)
-        lines = [
-            paths.propagating_line(s.k0, s.real_branches, int(more * count), share * dip, share * seen.sharp)
+        memory.check_contour(1.4 * count, checks.sources.angles.size, checks.z.size)
+        contours = [
+            paths.propagating_contour(s.k0, s.real_branches, int(more * count), share * dip, share * seen.sharp)
             for more, share in ((1.0, 0.7), (1.4, 1.0))
         ]
-        one, two = (error_estimate.sampled(checks, line, bool(moved)) for moved, line in enumerate(lines))
+        one, two = (error_estimate.sampled(checks, contour, bool(moved)) for moved, contour in enumerate(contours))
         error, _ = error_estimate.difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
             checks = error_estimate.with_dark_planes(checks)
             error, _ = error_estimate.difference(checks, one, two)
-        if error.max() <= rtol or count > MOST_MODES // 4:
+        if error.max() <= rtol or count > MOST_PLANE_WAVES // 4:
             break
         count = int(1.8 * count)
-    return Solution(lines[1], error, amplitudes=two.amplitudes)
+    return Quadrature(contours[1], error, amplitudes=two.amplitudes)
 
 
-def periodic_solution(s: SampledSlab, fan: Fan, x: np.ndarray, period: float) -> Solution:
+def periodic_quadrature(s: SampledSlab, sources: AngleInterpolation, x: np.ndarray, period: float) -> Quadrature:
     """The plain sum over the real orders of a stated period."""
-    band = min(fan.band(s.k0, 1e-15), 2 * np.pi * MOST_MODES / period)
-    line = paths.periodic_line(period, band)
+    band = min(sources.band(s.k0, 1e-15), 2 * np.pi * MOST_PLANE_WAVES / period)
+    contour = paths.periodic_contour(period, band)
     dx = spacing_for_fft(x, band, paths.EPS)
     n = round(period / dx) if dx else 0
     fits = n and abs(n * dx - period) < 4 * paths.EPS * period and paths.fast_length(n) == n
-    error = np.zeros(fan.angles.size if fan.mix is None else fan.mix.shape[0])
-    return Solution(line, error, n if fits and n >= x.size else 0)
+    error = np.zeros(sources.angles.size if sources.weights is None else sources.weights.shape[0])
+    return Quadrature(contour, error, n if fits and n >= x.size else 0)

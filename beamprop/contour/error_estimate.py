@@ -15,11 +15,11 @@ import numpy as np
 
 from ..memory import check_contour
 from ..response.sampled_slab import SampledSlab
-from ..response.transfer_function import Transfer, shifts
-from ..sources.angles import Fan
+from ..response.transfer_function import TransferFunction, shifts
+from ..sources.angles import AngleInterpolation
 from ..sources.beams import Beam
 from . import near_normal, paths
-from .paths import Line, Reach
+from .paths import Contour, Extent
 
 #: How far kx and w are moved.
 SHIFT = 4 * paths.EPS
@@ -30,20 +30,20 @@ DARK = 1e-290
 class Checks(NamedTuple):
     """Where two lines are compared."""
 
-    fan: Fan
+    sources: AngleInterpolation
     k0: float
-    transfer: Transfer
+    transfer: TransferFunction
     x: np.ndarray
     z: np.ndarray
     guided: bool  #: whether the transfer knows guided modes (none without a slab)
-    bright: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
+    peaks_outside: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
     dark: np.ndarray | None  #: whether a plane is dark to rounding for each asked beam, (A, Z); None until it matters
 
 
 class Sampled(NamedTuple):
     """A line, and its response at the planes that are compared."""
 
-    line: Line
+    contour: Contour
     h: np.ndarray
     amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
 
@@ -91,16 +91,16 @@ DARKEST, DARKER = 4, 0.3
 BESIDE, LIGHTLESS = 1e-3, 1e-11
 
 
-def darkest_planes(fan: Fan, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
+def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
     """Planes at nodes of standing waves: errors are over the largest |p| of each plane, so that these ask for the most.
 
     By the strong plane waves of some of the beams: what is dark for all of them is dark for the beam (Parseval).
     """
     order = np.sort(z)
     found: list[float] = []
-    some = fan.spread(3)
-    for angle in fan.asked[some]:
-        darker = _darkness(_strengths(fan.at(float(angle)), k0, transfer, order), order, np.pi / k0)
+    some = sources.spread(3)
+    for angle in sources.requested[some]:
+        darker = _darkness(_strengths(sources.at(float(angle)), k0, transfer, order), order, np.pi / k0)
         picked: list[float] = []
         for i in np.argsort(darker, kind="stable"):
             if darker[i] > DARKER or len(picked) == DARKEST:
@@ -126,18 +126,18 @@ def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
 
 def with_dark_planes(checks: Checks) -> Checks:
     """Tell which planes hold no more than rounding beside what stands next to them: p on a perfect wall."""
-    fan, k0, transfer, z = checks.fan, checks.k0, checks.transfer, checks.z
+    sources, k0, transfer, z = checks.sources, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
-    near = np.concatenate([z, np.maximum(z - step, fan.beam.z0), z + step])
-    some = fan.spread(9)
+    near = np.concatenate([z, np.maximum(z - step, sources.beam.z0), z + step])
+    some = sources.spread(9)
     dark = []
-    for angle in fan.asked[some]:
-        here, front, behind = np.split(_strengths(fan.at(float(angle)), k0, transfer, near), 3)
+    for angle in sources.requested[some]:
+        here, front, behind = np.split(_strengths(sources.at(float(angle)), k0, transfer, near), 3)
         dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
-    return checks._replace(dark=interpolated(fan.asked, fan.asked[some], np.array(dark)))
+    return checks._replace(dark=interpolated(sources.requested, sources.requested[some], np.array(dark)))
 
 
-def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.ndarray:
+def _strengths(beam: Beam, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
     """The largest |S h| of a beam's strong plane waves on each plane, (Z,)."""
     k = _strong(beam, k0)
     # even in kx; through a layer of density 0 passes kx = 0 alone
@@ -145,23 +145,29 @@ def _strengths(beam: Beam, k0: float, transfer: Transfer, z: np.ndarray) -> np.n
     return np.max(np.nan_to_num(h * np.abs(beam.spectrum(k, k0))), axis=1)
 
 
-def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
+def sampled(checks: Checks, contour: Contour, moved: bool) -> Sampled:
     """The response at the planes that are compared, `moved` in its last bits or not."""
-    check_contour(line.k.size, checks.fan.angles.size, checks.z.size)
-    h = checks.transfer(line.k, checks.z, SHIFT if moved else 0.0)
-    return Sampled(line, h, amplitudes(checks.k0, checks.fan, line))
+    check_contour(contour.k.size, checks.sources.angles.size, checks.z.size)
+    h = checks.transfer(contour.k, checks.z, SHIFT if moved else 0.0)
+    return Sampled(contour, h, amplitudes(checks.k0, checks.sources, contour))
 
 
 class Survey(NamedTuple):
     """What a first look at the response tells."""
 
     noise: float  #: relative rounding of the response at the first and last plane
-    bright: np.ndarray  #: see `Checks`
+    peaks_outside: np.ndarray  #: see `Checks`
     sharp: float  #: distance from kx = 0 of the nearest singularity, inf where none is near
 
 
 def survey(
-    s: SampledSlab, fan: Fan, transfer: Transfer, x: np.ndarray, z: np.ndarray, reach: Reach, rtol: float
+    s: SampledSlab,
+    sources: AngleInterpolation,
+    transfer: TransferFunction,
+    x: np.ndarray,
+    z: np.ndarray,
+    reach: Extent,
+    rtol: float,
 ) -> Survey:
     """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
     whether the response is sharp at kx = 0.
@@ -169,15 +175,15 @@ def survey(
     All at the first and the last plane: if the beam lands among the positions there, it does so between.
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
-    asked = fan.asked
-    some = fan.spread(3)
-    rays = np.concatenate([_strong(fan.at(float(a)), s.k0) for a in asked[some]])
+    requested = sources.requested
+    some = sources.spread(3)
+    rays = np.concatenate([_strong(sources.at(float(a)), s.k0) for a in requested[some]])
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
     # Gauss panels over propagating waves are wider than the step of a trapezoid rule
     wide = min(0.2 * reach.branch, math.sqrt(2 * s.k0 / max(reach.path, 1e-9)))
-    first_node = math.pi / paths.plan_bent(reach, rtol).window if fan.beam.entire else wide
+    first_node = math.pi / paths.plan_bent(reach, rtol).window if sources.beam.entire else wide
     near = near_normal.around(np.array([first_node]))
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is not calm
         h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
@@ -186,28 +192,30 @@ def survey(
     sharp = math.inf
     if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
         sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
-    middle, half = _landing(fan, h[:, 2 * k.size + near.size :], some.size, step)
-    bright = np.zeros((asked.size, z.size))
+    middle, half = _landing(sources, h[:, 2 * k.size + near.size :], some.size, step)
+    peaks_outside = np.zeros((requested.size, z.size))
     if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
         if z.size > 1:
-            middle, half = _landing(fan, transfer(beside, z), some.size, step)
+            middle, half = _landing(sources, transfer(beside, z), some.size, step)
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
-        bright = interpolated(asked, asked[some], _brightness(s, fan, transfer, z, asked[some], places.ravel()))
-    return Survey(noise, bright, sharp)
+        peaks_outside = interpolated(
+            requested, requested[some], _brightness(s, sources, transfer, z, requested[some], places.ravel())
+        )
+    return Survey(noise, peaks_outside, sharp)
 
 
-def wide_enough(transfer: Transfer, z: np.ndarray, low: float, band: float) -> bool:
+def wide_enough(transfer: TransferFunction, z: np.ndarray, low: float, band: float) -> bool:
     """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane, not only what else there is."""
     k = np.linspace(low, band, 24) + 0j
     h = np.abs(transfer(k, z[[0, -1]] if z.size > 1 else z))
     return bool(np.all(np.max(np.nan_to_num(h), axis=1) > 0.01))
 
 
-def _landing(fan: Fan, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
+def _landing(sources: AngleInterpolation, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half-width of the places where `count` beams land on each plane, (Z, count), from h beside their rays."""
     low, high = (v.reshape(h.shape[0], count, -1) for v in np.split(h, 2, axis=1))
     least, most = shifts(low, high, step)
-    return fan.beam.centre + (least + most) / 2, fan.beam.reach(0.1) + (most - least) / 2
+    return sources.beam.centre + (least + most) / 2, sources.beam.reach(0.1) + (most - least) / 2
 
 
 def _change(a: np.ndarray, b: np.ndarray) -> float:
@@ -232,21 +240,26 @@ MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 
 def _brightness(
-    s: SampledSlab, fan: Fan, transfer: Transfer, z: np.ndarray, angles: np.ndarray, x: np.ndarray
+    s: SampledSlab,
+    sources: AngleInterpolation,
+    transfer: TransferFunction,
+    z: np.ndarray,
+    angles: np.ndarray,
+    x: np.ndarray,
 ) -> np.ndarray:
     """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
-    x = x - fan.beam.centre
-    path = float(z.max()) - fan.beam.z0 + s.thickness
+    x = x - sources.beam.centre
+    path = float(z.max()) - sources.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
     found = np.full((2, angles.size, z.size), np.inf)
     if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
         return np.zeros(found.shape[1:])
-    beams = Fan(fan.beam, angles)
+    beams = AngleInterpolation(sources.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
-        line = paths.propagating_line(s.k0, s.real_branches, int(more * count))
-        right, left = amplitudes(s.k0, beams, line)
+        contour = paths.propagating_contour(s.k0, s.real_branches, int(more * count))
+        right, left = amplitudes(s.k0, beams, contour)
         with np.errstate(invalid="ignore", over="ignore"):
-            p = paths.direct_sum(line, transfer(line.k, z), right, left, x)
+            p = paths.direct_sum(contour, transfer(contour.k, z), right, left, x)
             found[i] = np.max(np.abs(p), axis=2)
     return np.nan_to_num(found.min(axis=0), nan=0.0, posinf=0.0)
 
@@ -258,11 +271,11 @@ def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.nd
     return np.minimum(values[above], values[below])
 
 
-def arriving_band(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float) -> float:
+def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> float:
     """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
     k = np.geomspace(0.01 * reach.k0, reach.band, 400)
     h = np.abs(checks.transfer(k.astype(complex), checks.z))
-    launched = np.max(np.abs(checks.fan.spectra(k, s.k0)) + np.abs(checks.fan.spectra(-k, s.k0)), axis=0)
+    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
     size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # by decade of kx
     size = np.maximum.accumulate(size[:, ::-1], axis=1)[:, ::-1]  # edges have spectra with zeros
     strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
@@ -270,92 +283,96 @@ def arriving_band(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float
     return float(k[min(last + 1, k.size - 1)])
 
 
-def cut_spectra(s: SampledSlab, checks: Checks, reach: Reach, tolerance: float) -> np.ndarray:
+def cut_spectra(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> np.ndarray:
     """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
-    ends = checks.fan.spectrum_ends(s.k0)
+    ends = checks.sources.spectrum_ends(s.k0)
     ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
     if not ends.size:
         return ends
     # spectra of edges have zeros: the last twentieth in front of each end stands for it
     before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
     k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
-    launched = np.max(np.abs(checks.fan.spectra(k, s.k0)) + np.abs(checks.fan.spectra(-k, s.k0)), axis=0)
+    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
     size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
     at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
     return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]
 
 
 #: Of more asked beams than this so many are judged, spread evenly over the angles; those between take the worse neighbour's error.
-JUDGED = 64
+ESTIMATED = 64
 
 
 def difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
     """Estimated error of the first line over the largest |p| of each plane, by asked beam; and what lies beyond the ends of both."""
-    asked = checks.fan.asked
-    if checks.fan.mix is None or asked.size <= JUDGED:
+    requested = checks.sources.requested
+    if checks.sources.weights is None or requested.size <= ESTIMATED:
         return _difference(checks, one, two)
-    some = checks.fan.spread(JUDGED)
+    some = checks.sources.spread(ESTIMATED)
     dark = None if checks.dark is None else checks.dark[some]
-    part = checks._replace(fan=checks.fan.taken(some), bright=checks.bright[some], dark=dark)
+    part = checks._replace(sources=checks.sources.taken(some), peaks_outside=checks.peaks_outside[some], dark=dark)
     error, edge = _difference(part, one, two)
-    return -interpolated(asked, asked[some], -error), edge
+    return -interpolated(requested, requested[some], -error), edge
 
 
 def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray, float]:
-    fan = checks.fan
+    sources = checks.sources
     (right1, left1), (right2, left2) = one.amplitudes, two.amplitudes
-    x = checks.x - fan.beam.centre
+    x = checks.x - sources.beam.centre
     # some of the angles that are mixed are summed by themselves too, in the same product: the extremes, where mixing errs most
     some = np.empty(0, int)
     right, left = right1, left1
-    if fan.mix is not None:
-        some = fan.spread(5)
-        pairs = zip(one.amplitudes, amplitudes(checks.k0, Fan(fan.beam, fan.asked[some]), one.line), strict=True)
+    if sources.weights is not None:
+        some = sources.spread(5)
+        pairs = zip(
+            one.amplitudes,
+            amplitudes(checks.k0, AngleInterpolation(sources.beam, sources.requested[some]), one.contour),
+            strict=True,
+        )
         right, left = (np.concatenate(pair) for pair in pairs)
-    own = np.asarray(paths.direct_sum(one.line, one.h, right, left, x))
-    a = fan.mixed(own[: fan.angles.size])
-    b = fan.mixed(np.asarray(paths.direct_sum(two.line, two.h, right2, left2, x)))
+    own = np.asarray(paths.direct_sum(one.contour, one.h, right, left, x))
+    a = sources.interpolated_to(own[: sources.angles.size])
+    b = sources.interpolated_to(np.asarray(paths.direct_sum(two.contour, two.h, right2, left2, x)))
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
-    largest = np.maximum(largest, checks.bright)
+    largest = np.maximum(largest, checks.peaks_outside)
     seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)
-    source = _source_rounding(checks.k0, fan, one)
+    source = _source_rounding(checks.k0, sources, one)
     edge = first_edge = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):
         error = (np.max(np.abs(a - b), axis=2) + source) / scale
-        if fan.beam.entire:
-            mix = None if fan.mix is None else np.abs(fan.mix)
+        if sources.beam.entire:
+            weights = None if sources.weights is None else np.abs(sources.weights)
             edge, cut = (
                 _beyond(two, right2, left2),
                 _cut_off(checks, one, right1, left1, float(np.max(np.abs(x)))),
             )
             first_edge = _beyond(one, right1, left1)
-            edge, cut, first_edge = (v if mix is None else mix @ v for v in (edge, cut, first_edge))
+            edge, cut, first_edge = (v if weights is None else weights @ v for v in (edge, cut, first_edge))
             error += cut / scale
-        if fan.mix is not None:
-            error += 3 * np.max(np.abs(own[fan.angles.size :] - a[some]), axis=(0, 2)) / scale
+        if sources.weights is not None:
+            error += 3 * np.max(np.abs(own[sources.angles.size :] - a[some]), axis=(0, 2)) / scale
     worst = np.max(np.where(seen, 1.5 * np.nan_to_num(error, nan=np.inf) + edge / scale, 0.0), axis=1)
     # both lines share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase
-    way = float(np.max(np.abs(x)) + np.max(checks.z) - fan.beam.z0)
+    way = float(np.max(np.abs(x)) + np.max(checks.z) - sources.beam.z0)
     ends = np.max(np.where(seen, np.maximum(edge, first_edge) / scale, 0.0))
     return worst + paths.EPS * (4 + checks.k0 * way), float(ends)
 
 
-def amplitudes(k0: float, fan: Fan, line: Line) -> tuple[np.ndarray, np.ndarray]:
+def amplitudes(k0: float, sources: AngleInterpolation, contour: Contour) -> tuple[np.ndarray, np.ndarray]:
     """w S(k) and w S(-k) about the source's middle: (B, n) each."""
-    return paths.amplitudes(line, lambda k: fan.spectra(k, k0), fan.beam.centre)
+    return paths.amplitudes(contour, lambda k: sources.spectra(k, k0), sources.beam.centre)
 
 
-def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
+def _source_rounding(k0: float, sources: AngleInterpolation, one: Sampled) -> np.ndarray:
     """What rounding of a sampled source brings to each plane, on both lines alike; (Z,).
 
     The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
     (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
     """
-    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.line.weight), [np.zeros(one.h.shape[0])]
-    for angle in {float(fan.angles.min()), float(fan.angles.max())}:
-        rounding: Any = getattr(fan.at(angle), "spectral_rounding", None)
-        for k in (one.line.k, -one.line.k) if rounding else ():
+    h, weight, bounds = np.abs(one.h), 2 * np.abs(one.contour.weight), [np.zeros(one.h.shape[0])]
+    for angle in {float(sources.angles.min()), float(sources.angles.max())}:
+        rounding: Any = getattr(sources.at(angle), "spectral_rounding", None)
+        for k in (one.contour.k, -one.contour.k) if rounding else ():
             coherent, white = rounding(k, k0)
             with np.errstate(over="ignore", invalid="ignore"):
                 bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
@@ -364,9 +381,9 @@ def _source_rounding(k0: float, fan: Fan, one: Sampled) -> np.ndarray:
 
 def _beyond(end: Sampled, right: np.ndarray, left: np.ndarray) -> np.ndarray:
     """Size of what lies beyond the end of a path: its last two tenths, continued geometrically; (B, Z)."""
-    if end.line.closed:
+    if end.contour.closed:
         return np.zeros((right.shape[0], end.h.shape[0]))
-    n, circles = end.line.k.size, end.line.circles
+    n, circles = end.contour.k.size, end.contour.circles
     tenth = max(1, (n - circles) // 10)
     tail = slice(max(circles, n - 2 * tenth), n)
     size = (np.abs(right[:, tail]) + np.abs(left[:, tail]))[:, None] * np.abs(end.h[:, tail])
@@ -381,25 +398,25 @@ def _cut_off(checks: Checks, one: Sampled, right: np.ndarray, left: np.ndarray, 
     |w S h e^{ikx}| at the last node or above it on the real axis, where the cut is defined, times the nodes that would fit between
     them: on a long way along z waves below the axis have died when those on the axis have not.
     """
-    line, fan, k0 = one.line, checks.fan, checks.k0
+    contour, sources, k0 = one.contour, checks.sources, checks.k0
     missing = np.zeros((right.shape[0], one.h.shape[0]))
     for side, amplitude in ((1, right), (-1, left)):
-        beyond = fan.spectra(side * _after(line, line.k.size - 1), k0)
+        beyond = sources.spectra(side * _after(contour, contour.k.size - 1), k0)
         for i in np.flatnonzero((amplitude[:, -1] == 0) | ~beyond.any(axis=1)):
             used = np.flatnonzero(amplitude[i])
             if used.size < 2:
                 continue
             j = int(used[-1])
-            if fan.at(float(fan.angles[i])).spectrum(side * _after(line, j), k0).any():
+            if sources.at(float(sources.angles[i])).spectrum(side * _after(contour, j), k0).any():
                 continue
-            step, depth = max(abs(line.k[j] - line.k[j - 1]), 1e-300), abs(line.k[j].imag)
+            step, depth = max(abs(contour.k[j] - contour.k[j - 1]), 1e-300), abs(contour.k[j].imag)
             below = np.abs(one.h[:, j]) * math.exp(min(depth * extent, 100))
-            on_axis = np.nan_to_num(np.abs(checks.transfer(np.array([line.k[j].real + 0j]), checks.z)[:, 0]))
+            on_axis = np.nan_to_num(np.abs(checks.transfer(np.array([contour.k[j].real + 0j]), checks.z)[:, 0]))
             missing[i] += np.abs(amplitude[i, j]) * np.maximum(below, on_axis) * (1 + depth / step)
     return missing
 
 
-def _after(line: Line, j: int) -> np.ndarray:
+def _after(contour: Contour, j: int) -> np.ndarray:
     """Two places beyond node j."""
-    step = max(abs(line.k[j] - line.k[j - 1]), 1e-300)
-    return line.k[j] + 2 * step * np.arange(1, 3)
+    step = max(abs(contour.k[j] - contour.k[j - 1]), 1e-300)
+    return contour.k[j] + 2 * step * np.arange(1, 3)

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from ..response.transfer_function import Transfer
+from ..response.transfer_function import TransferFunction
 
 #: Points on the half circle around kx = 0 over which a response is averaged.
 AROUND = 16
@@ -38,7 +38,7 @@ def is_calm(h: np.ndarray, allowed: float) -> np.ndarray:
     return np.nan_to_num(apart, nan=np.inf) <= allowed
 
 
-def nearest_singularity(transfer: Transfer, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
+def nearest_singularity(transfer: TransferFunction, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
     """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular on any plane; inf if all."""
     count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
     radii = radius * 4.0 ** -np.arange(count)

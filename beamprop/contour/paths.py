@@ -41,7 +41,7 @@ from ..memory import POINTS_AT_A_TIME
 EPS = float(np.finfo(float).eps)
 
 
-class Line(NamedTuple):
+class Contour(NamedTuple):
     """Nodes k and weights w of ``p(x) = sum w h(k) [S(k) e^{ikx} + S(-k) e^{-ikx}]``.
 
     `step` is the spacing of Re k for an even line that begins at ``first * step``, and 0 for uneven nodes. The first
@@ -58,7 +58,7 @@ class Line(NamedTuple):
     closed: bool = False  #: whether it ends where the spectra do: nothing lies beyond
 
 
-class Reach(NamedTuple):
+class Extent(NamedTuple):
     """What a line must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
 
     k0: Any  #: wavenumber of the medium in front
@@ -70,7 +70,7 @@ class Reach(NamedTuple):
     low: Any = 0.0  #: smallest |Re kx| of the source's spectrum
 
 
-class OpenPlan(NamedTuple):
+class StraightPlan(NamedTuple):
     """The four numbers of an open line; floats, or arrays (F,)."""
 
     sigma: Any
@@ -78,12 +78,12 @@ class OpenPlan(NamedTuple):
     window: Any
     band: Any
 
-    def other(self) -> OpenPlan:
+    def other(self) -> StraightPlan:
         """A plan that shares no number with this one, to judge it by."""
-        return OpenPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
+        return StraightPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
-def plan_open(reach: Reach, rtol: float, tighten: float = 1.0, noise: float = EPS) -> OpenPlan:
+def plan_straight(reach: Extent, rtol: float, tighten: float = 1.0, noise: float = EPS) -> StraightPlan:
     """Choose sigma, delta, W and the band from the error terms above; `tighten` > 1 asks for more of everything.
 
     `noise` is the relative rounding of S h, which exp(sigma X) magnifies.
@@ -104,10 +104,10 @@ def plan_open(reach: Reach, rtol: float, tighten: float = 1.0, noise: float = EP
         delta = np.minimum(steep, np.sqrt(2 * k / Z))
         if all(np.all(new == old) for new, old in zip((sigma, delta, window), before, strict=True)):
             break
-    return OpenPlan(sigma, delta, np.maximum(window, decades / sigma), reach.band)
+    return StraightPlan(sigma, delta, np.maximum(window, decades / sigma), reach.band)
 
 
-def open_line(plan: OpenPlan) -> Line:
+def straight_contour(plan: StraightPlan) -> Contour:
     """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
 
     Of arrays (F,), one line a frequency with the same m for all: k and weight are (F, n).
@@ -128,7 +128,9 @@ def open_line(plan: OpenPlan) -> Line:
     chi[..., : 1 - first] = left[..., size + first :]
     right = min(size, m[-1])
     chi[..., 1 - first : 1 - first + right] -= np.conj(left[..., :size][..., ::-1][..., :right])
-    return Line(k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta)
+    return Contour(
+        k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta
+    )
 
 
 class BentPlan(NamedTuple):
@@ -176,7 +178,7 @@ SLOPE = 0.35
 
 
 def plan_bent(
-    reach: Reach, rtol: float, noise: float = EPS, deepest: float = math.inf, sharp: float = math.inf
+    reach: Extent, rtol: float, noise: float = EPS, deepest: float = math.inf, sharp: float = math.inf
 ) -> BentPlan:
     """A first plan from the error terms; what they do not know (the field's own width) shows in the difference to `other`.
 
@@ -203,7 +205,7 @@ def plan_bent(
     return BentPlan(depth, window, reach.band, bend, reach.low, *graded)
 
 
-def bent_line(plan: BentPlan) -> Line:
+def bent_contour(plan: BentPlan) -> Contour:
     """Nodes k = s - i depth erf(1.5 s/bend) of the trapezoid rule, and weights dk/2 pi; s = (m + 1/2) 2 pi/W where not graded.
 
     At a crossing the imaginary part changes sign as erf((crossing - s)/gap).
@@ -219,7 +221,7 @@ def bent_line(plan: BentPlan) -> Line:
         side = erf(v)
         slope = slope * side - down * (GAUSS / plan.gap) * np.exp(-(np.minimum(np.abs(v), 26.0) ** 2))
         down = down * side
-    return Line(s - 1j * plan.depth * down, (1 - 1j * plan.depth * slope) * (step / (2 * math.pi)))
+    return Contour(s - 1j * plan.depth * down, (1 - 1j * plan.depth * slope) * (step / (2 * math.pi)))
 
 
 GAUSS = 2 / math.sqrt(math.pi)
@@ -246,16 +248,18 @@ def _graded(plan: BentPlan) -> tuple[np.ndarray, np.ndarray | float]:
     return a * np.sinh(y), 1 / (1 / ds + B / (a * np.cosh(y)))
 
 
-def periodic_line(period: float, band: float) -> Line:
+def periodic_contour(period: float, band: float) -> Contour:
     """The real orders 2 pi m / period of a periodic array of beams, up to the band."""
     ds = 2 * math.pi / period
     k = np.arange(math.ceil(band / ds) + 1) * (ds + 0j)
     weight = np.full(k.size, 1 / period)
     weight[0] /= 2
-    return Line(k, weight, ds, 0)
+    return Contour(k, weight, ds, 0)
 
 
-def propagating_line(k0: float, breaks: list[float], count: int, dip: float = 0.0, sharp: float = math.inf) -> Line:
+def propagating_contour(
+    k0: float, breaks: list[float], count: int, dip: float = 0.0, sharp: float = math.inf
+) -> Contour:
     """About `count` Gauss nodes from 0 to k0, for sources of propagating waves only.
 
     The substitution kx = k0 sin(alpha) takes out the square roots at k0, and a spectrum with 1/kz in it is an entire function of
@@ -278,7 +282,7 @@ def propagating_line(k0: float, breaks: list[float], count: int, dip: float = 0.
         k = k0 * np.sin(alpha)
         nodes.append(k)
         weights.append(np.sqrt((k0 - k) * (k0 + k)) * turn * (hi - lo) * slope * w / (2 * np.pi))
-    return Line(np.concatenate(nodes).astype(complex), np.concatenate(weights))
+    return Contour(np.concatenate(nodes).astype(complex), np.concatenate(weights))
 
 
 def _dipped(t: np.ndarray, dip: float) -> tuple[np.ndarray, np.ndarray]:
@@ -309,12 +313,12 @@ def slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.nda
 # --- sums over a line -------------------------------------------------------------------------------------
 
 
-def amplitudes(line: Line, spectrum: Any, centre: float) -> tuple[np.ndarray, np.ndarray]:
+def amplitudes(contour: Contour, spectrum: Any, centre: float) -> tuple[np.ndarray, np.ndarray]:
     """w S(k) and w S(-k) about x = centre; `spectrum` is a function of kx about x = 0."""
-    right, left = line.weight * spectrum(line.k), line.weight * spectrum(-line.k)
+    right, left = contour.weight * spectrum(contour.k), contour.weight * spectrum(-contour.k)
     if centre == 0:
         return right, left
-    turn = np.exp(1j * line.k * centre)
+    turn = np.exp(1j * contour.k * centre)
     return right * turn, left / turn
 
 
@@ -322,7 +326,7 @@ def amplitudes(line: Line, spectrum: Any, centre: float) -> tuple[np.ndarray, np
 MOST_PHASES = 4_000_000
 
 
-def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
+def direct_sum(contour: Contour, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p at any x (relative to the centre): one matrix product, (Z, n) by (n, X).
 
     With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
@@ -332,17 +336,17 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
         whole = np.empty((*right.shape[:-1], h.shape[0], x.size), complex)
         for start in range(0, x.size, POINTS_AT_A_TIME):
             few = slice(start, start + POINTS_AT_A_TIME)
-            whole[..., few] = direct_sum(line, h, right, left, x[few])
+            whole[..., few] = direct_sum(contour, h, right, left, x[few])
         return whole
     block = max(1, MOST_PHASES // max(1, x.size))
-    if line.k.size > block:
-        parts = [slice(start, start + block) for start in range(0, line.k.size, block)]
+    if contour.k.size > block:
+        parts = [slice(start, start + block) for start in range(0, contour.k.size, block)]
         sums = (
-            direct_sum(Line(line.k[p], line.weight[p], line.step), h[:, p], right[..., p], left[..., p], x)
+            direct_sum(Contour(contour.k[p], contour.weight[p], contour.step), h[:, p], right[..., p], left[..., p], x)
             for p in parts
         )
         return functools.reduce(np.add, sums)
-    forth, back = _phases(line.k, x, bool(np.any(left)), line.step)
+    forth, back = _phases(contour.k, x, bool(np.any(left)), contour.step)
     if right.ndim == 1 and h.shape[0] > 2:
         both = right[:, None] * forth
         if back is not None:
@@ -454,7 +458,7 @@ def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> 
 
 
 def fft_sum(
-    line: Line,
+    contour: Contour,
     h: np.ndarray,
     right: np.ndarray,
     left: np.ndarray,
@@ -468,9 +472,9 @@ def fft_sum(
     `out`, of its shape and contiguous, is filled if given.
     """
     shape = (*right.shape[:-1], h.shape[0], x.size)
-    turn = np.exp(1j * (line.first + np.arange(line.k.size)) * line.step * x[0])
+    turn = np.exp(1j * (contour.first + np.arange(contour.k.size)) * contour.step * x[0])
     amplitude = np.stack([np.atleast_2d(right) * turn, np.atleast_2d(left) / turn])  # (2, B, n)
-    grow = np.exp(line.sigma * x)
+    grow = np.exp(contour.sigma * x)
     scale = np.repeat([grow, 1 / grow], 2, axis=1)  # for complex numbers seen as pairs of real ones
     leftward = bool(np.any(left))
     planes, total = h.shape[0], amplitude.shape[1] * h.shape[0]
@@ -488,7 +492,7 @@ def fft_sum(
         else:
             beam, plane = np.divmod(np.arange(start, stop), planes)
             part, weights = h[plane], amplitude[:, beam]
-        _fold(part, weights, line.first, plan.source[:, : stop - start])
+        _fold(part, weights, contour.first, plan.source[:, : stop - start])
         plan.run[0]()
         if leftward:
             plan.run[1]()
@@ -503,7 +507,7 @@ SLOPES = 2**20
 
 
 def grid_sum(
-    line: Line,
+    contour: Contour,
     h: np.ndarray,
     right: np.ndarray,
     left: np.ndarray,
@@ -515,15 +519,15 @@ def grid_sum(
 
     What is left out is (k offset)^2/2 of a plane wave.
     """
-    p = fft_sum(line, h, right, left, grid.even, n, out)
+    p = fft_sum(contour, h, right, left, grid.even, n, out)
     if grid.offsets is None:
         return p
-    ik = 1j * line.k
+    ik = 1j * contour.k
     beams = right.size // right.shape[-1]
     rows = max(1, SLOPES // (grid.points * beams))
     for start in range(0, h.shape[0], rows):
         part = slice(start, start + rows)
-        slope = fft_sum(line, h[part], right * ik, -left * ik, grid.even, n)
+        slope = fft_sum(contour, h[part], right * ik, -left * ik, grid.even, n)
         slope *= grid.offsets
         p[..., part, :] += slope
     return p

@@ -14,10 +14,10 @@ import numpy as np
 
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab
-from ..sources.angles import Fan
+from ..sources.angles import AngleInterpolation
 from . import paths
 from .error_estimate import Checks, amplitudes, interpolated
-from .paths import BentPlan, Reach
+from .paths import BentPlan, Extent
 from .residues import add_residues
 
 #: How much wider than what is asked for, and than the way along z, the window is.
@@ -26,7 +26,7 @@ WIDER, ALONG = 6.0, 4.0
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 
-def with_wider_look(s: SampledSlab, checks: Checks, reach: Reach, plan: BentPlan, found: MisplacedPoles) -> Checks:
+def with_wider_look(s: SampledSlab, checks: Checks, reach: Extent, plan: BentPlan, found: MisplacedPoles) -> Checks:
     """Checks that know of the peaks far outside; the same ones where the window would take too many plane waves."""
     extent = WIDER * max(reach.extent, reach.source) + ALONG * max(reach.path, 0.0)
     wide = paths.plan_bent(reach._replace(extent=extent, band=plan.band), ROUGH, sharp=plan.sharp)
@@ -36,17 +36,19 @@ def with_wider_look(s: SampledSlab, checks: Checks, reach: Reach, plan: BentPlan
     two = one.other()
     if two.nodes > MOST_WAVES:
         return checks
-    asked = checks.fan.asked
-    some = checks.fan.spread(5)
-    beams = Fan(checks.fan.beam, asked[some])
+    requested = checks.sources.requested
+    some = checks.sources.spread(5)
+    beams = AngleInterpolation(checks.sources.beam, requested[some])
     x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
     peaks = []
     for i, p in enumerate((one, two)):
-        line = add_residues(s, paths.bent_line(p), found, extent, reach.path, bool(i))
-        right, left = amplitudes(checks.k0, beams, line)
+        contour = add_residues(s, paths.bent_contour(p), found, extent, reach.path, bool(i))
+        right, left = amplitudes(checks.k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
-            summed = paths.direct_sum(line, checks.transfer(line.k, checks.z), right, left, x)
+            summed = paths.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
             peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))
     less, more = np.minimum(*peaks), np.maximum(*peaks)
-    bright = np.where(less > (1 - AGREED) * more, less, 0.0)
-    return checks._replace(bright=np.maximum(checks.bright, interpolated(asked, asked[some], bright)))
+    peaks_outside = np.where(less > (1 - AGREED) * more, less, 0.0)
+    return checks._replace(
+        peaks_outside=np.maximum(checks.peaks_outside, interpolated(requested, requested[some], peaks_outside))
+    )

@@ -6,12 +6,12 @@ import numpy as np
 
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab
-from .paths import Line
+from .paths import Contour
 
 
 def add_residues(
-    s: SampledSlab, line: Line, found: MisplacedPoles, across: float, along: float, second: bool = False
-) -> Line:
+    s: SampledSlab, contour: Contour, found: MisplacedPoles, across: float, along: float, second: bool = False
+) -> Contour:
     """Add to a contour small circles around the poles on its wrong side.
 
     Trapezoid rule on a circle in the disc that holds nothing else, so small that neither e^{ikx} (over the distance `across`)
@@ -23,13 +23,15 @@ def add_residues(
     nodes, weights = [], []
     for k, free in zip(found.poles, found.radii, strict=True):
         sense = 1 if k.real < found.crossing else -1
-        if sense * (k.imag - np.interp(k.real, line.k.real, line.k.imag)) > 0:
+        if sense * (k.imag - np.interp(k.real, contour.k.real, contour.k.imag)) > 0:
             turn = np.exp(-2j * np.pi * sense * (np.arange(count) + 0.5) / count)
             slope = max(abs(k / np.sqrt(b * b - k * k + 0j)) for b in s.branch_points)  # |dkz/dkx|
             radius = share * min(free, 1.0 / (across + along * slope))
             nodes.append(k + radius * turn)
             weights.append(radius * turn * (-2j * np.pi * sense / count) / (2 * np.pi))
     if not nodes:
-        return line
+        return contour
     # in front, so that the contour's end stays the last node
-    return Line(np.concatenate([*nodes, line.k]), np.concatenate([*weights, line.weight]), circles=count * len(nodes))
+    return Contour(
+        np.concatenate([*nodes, contour.k]), np.concatenate([*weights, contour.weight]), circles=count * len(nodes)
+    )

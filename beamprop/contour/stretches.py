@@ -26,7 +26,7 @@ from ..modes.guided import BESIDE, Mode, dispersion_of
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab, on_the_right
 from . import residues
-from .paths import SLOPE, Line, Reach
+from .paths import SLOPE, Contour, Extent
 
 
 class Stretch(NamedTuple):
@@ -54,7 +54,7 @@ class Plan(NamedTuple):
         )
 
 
-def plan_stretches(reach: Reach, outside: float, rtol: float, noise: float) -> Plan:
+def plan_stretches(reach: Extent, outside: float, rtol: float, noise: float) -> Plan:
     """A first plan. `outside` is the length of the path along z in the half-spaces; `noise` the relative rounding of S h.
 
     exp(depth X) magnifies rounding and what lies on the other side, as does exp(height Z) above the axis, where waves in the
@@ -120,7 +120,7 @@ def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[Misplac
                 side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
                 here = misplaced.few_modes(s, Box(left, right, -away, away), _without_growth)
                 found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
-    above, below = (misplaced.with_circles(s, found[side], of=_without_growth) for side in (1, -1))
+    above, below = (misplaced.with_discs(s, found[side], of=_without_growth) for side in (1, -1))
     return [below, above._replace(crossing=0.0)]
 
 
@@ -174,7 +174,7 @@ RATIO, SHORTEST = 1.7, 1e-10
 FLAT, TURN = 1.2, 9.0
 
 
-def stretched_line(s: SampledSlab, parts: list[Stretch], plan: Plan, across: float, along: float) -> Line:
+def stretched_contour(s: SampledSlab, parts: list[Stretch], plan: Plan, across: float, along: float) -> Contour:
     """Gauss panels along a contour.
 
     Parameters
@@ -193,7 +193,7 @@ def stretched_line(s: SampledSlab, parts: list[Stretch], plan: Plan, across: flo
     g, w = np.polynomial.legendre.leggauss(plan.nodes)
     half = (stops - starts) / 2
     k = (starts + half)[:, None] + half[:, None] * g
-    return Line(k.ravel(), (half[:, None] * w).ravel() / (2 * math.pi))
+    return Contour(k.ravel(), (half[:, None] * w).ravel() / (2 * math.pi))
 
 
 def _corners(part: Stretch, plan: Plan) -> list[complex]:
@@ -235,15 +235,15 @@ def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def pair_of_lines(
+def pair_of_contours(
     s: SampledSlab,
-    reach: Reach,
+    reach: Extent,
     plan: Plan,
     start: float,
     crowded: bool,
     ends: np.ndarray = NO_ENDS,
     closed: bool = False,
-) -> tuple[Line, Line] | None:
+) -> tuple[Contour, Contour] | None:
     """A contour in stretches and another to judge it by, circles around what they leave on the wrong side.
 
     Parameters
@@ -280,12 +280,12 @@ def pair_of_lines(
     if closed:
         parts = [part for part in parts if part.hi <= ends[-1]]
     across = max(reach.extent, reach.source)
-    lines = []
+    contours = []
     for second, p in ((False, plan), (True, plan.other())):
-        line = stretched_line(s, parts, p, across, reach.path - s.thickness)
-        both = [residues.add_residues(s, line, poles, across, reach.path, second) for poles in found]
+        contour = stretched_contour(s, parts, p, across, reach.path - s.thickness)
+        both = [residues.add_residues(s, contour, poles, across, reach.path, second) for poles in found]
         around = sum(circled.circles for circled in both)
-        k = np.concatenate([*(circled.k[: circled.circles] for circled in both), line.k])
-        weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), line.weight])
-        lines.append(Line(k, weight, circles=around, closed=closed))
-    return lines[0], lines[1]
+        k = np.concatenate([*(circled.k[: circled.circles] for circled in both), contour.k])
+        weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), contour.weight])
+        contours.append(Contour(k, weight, circles=around, closed=closed))
+    return contours[0], contours[1]

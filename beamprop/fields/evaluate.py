@@ -13,24 +13,24 @@ import numpy as np
 
 from ..arrays import exponentials
 from ..contour import error_estimate, paths
-from ..contour.choose import Solution, fft_is_cheaper
+from ..contour.choose import Quadrature, fft_is_cheaper
 from ..response.sampled_slab import SampledSlab
-from ..response.transfer_function import Transfer
-from ..sources.angles import Fan, single
+from ..response.transfer_function import TransferFunction
+from ..sources.angles import AngleInterpolation, single
 from ..sources.beams import Beam
 from .low_rank import cross, mixing
 
 
-def evaluator(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+def evaluator(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """p at any x on the one plane of h: plane waves are solved and their amplitudes formed once, whatever is asked then."""
-    right, left = solution.amplitudes_of(s.k0, single(beam))
-    return lambda at: np.asarray(paths.direct_sum(solution.line, h, right[0], left[0], at - beam.centre))[0]
+    right, left = quadrature.amplitudes_of(s.k0, single(beam))
+    return lambda at: np.asarray(paths.direct_sum(quadrature.contour, h, right[0], left[0], at - beam.centre))[0]
 
 
-def beam_sum(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+def beam_sum(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p(z, x) of one beam by whichever of FFT and matrix product is cheaper."""
     out = np.empty((1, h.shape[0], x.size), complex)
-    fill(s, single(beam), solution, h, x, out)
+    fill(s, single(beam), quadrature, h, x, out)
     return out[0]
 
 
@@ -38,35 +38,37 @@ def beam_sum(s: SampledSlab, beam: Beam, solution: Solution, h: np.ndarray, x: n
 FEW_PLANES = 4
 
 
-def fill(s: SampledSlab, fan: Fan, solution: Solution, h: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+def fill(
+    s: SampledSlab, sources: AngleInterpolation, quadrature: Quadrature, h: np.ndarray, x: np.ndarray, out: np.ndarray
+) -> None:
     """p(z, x) of all asked beams into out (A, Z, X), of which (Z, X) must be contiguous."""
-    line, n = solution.line, solution.fft
-    right, left = solution.amplitudes_of(s.k0, fan)
-    x = x - fan.beam.centre
-    fast = n and fft_is_cheaper(n, line.k.size, x.size)
-    if fan.mix is not None:
+    contour, n = quadrature.contour, quadrature.fft
+    right, left = quadrature.amplitudes_of(s.k0, sources)
+    x = x - sources.beam.centre
+    fast = n and fft_is_cheaper(n, contour.k.size, x.size)
+    if sources.weights is not None:
         summed = (
-            paths.grid_sum(line, h, right, left, paths.grid_of(x), n)
+            paths.grid_sum(contour, h, right, left, paths.grid_of(x), n)
             if fast
-            else paths.direct_sum(line, h, right, left, x)
+            else paths.direct_sum(contour, h, right, left, x)
         )
         _check_finite(summed)
-        fan.mixed(summed, out)
+        sources.interpolated_to(summed, out)
         return
     if fast:
         grid = paths.grid_of(x)
         for a, b, into in zip(right, left, out, strict=True):
-            paths.grid_sum(line, h, a, b, grid, n, into)
+            paths.grid_sum(contour, h, a, b, grid, n, into)
     elif h.shape[0] <= FEW_PLANES and x.size >= exponentials.MANY and (step := exponentials.even_step(x)):
         for a, b, into in zip(right, left, out, strict=True):
-            into[...] = exponentials.over_waves(line.k, a * h, float(x[0]), step, x.size)
+            into[...] = exponentials.over_waves(contour.k, a * h, float(x[0]), step, x.size)
             if np.any(b):
-                into += exponentials.over_waves(-line.k, b * h, float(x[0]), step, x.size)
+                into += exponentials.over_waves(-contour.k, b * h, float(x[0]), step, x.size)
     elif len(right) == 1 or h.shape[0] > 64:
         for a, b, into in zip(right, left, out, strict=True):
-            into[...] = paths.direct_sum(line, h, a, b, x)
+            into[...] = paths.direct_sum(contour, h, a, b, x)
     else:
-        out[...] = paths.direct_sum(line, h, right, left, x)
+        out[...] = paths.direct_sum(contour, h, right, left, x)
     _check_finite(out)
 
 
@@ -88,9 +90,9 @@ SEARCHED, IN_EACH, MOST_ROWS, TRIED = 90, 40, 48, 5
 
 def fill_map(
     s: SampledSlab,
-    fan: Fan,
-    solution: Solution,
-    transfer: Transfer,
+    sources: AngleInterpolation,
+    quadrature: Quadrature,
+    transfer: TransferFunction,
     z: np.ndarray,
     x: np.ndarray,
     out: np.ndarray,
@@ -105,23 +107,29 @@ def fill_map(
         part = slice(start, start + TOGETHER)
         more: Any = None
         if min(TOGETHER, z.size - start) >= MANY_PLANES and x.size >= MANY_POINTS:
-            more = _fill_from_few(s, fan, solution, transfer, z[part], x, out[:, part], rtol)
+            more = _fill_low_rank(s, sources, quadrature, transfer, z[part], x, out[:, part], rtol)
         if more is None:
-            more = _fill_all(s, fan, solution, transfer, z[part], x, out[:, part])
+            more = _fill_all(s, sources, quadrature, transfer, z[part], x, out[:, part])
         gained = np.maximum(gained, more)
     return gained
 
 
 def _fill_all(
-    s: SampledSlab, fan: Fan, solution: Solution, transfer: Transfer, z: np.ndarray, x: np.ndarray, out: np.ndarray
+    s: SampledSlab,
+    sources: AngleInterpolation,
+    quadrature: Quadrature,
+    transfer: TransferFunction,
+    z: np.ndarray,
+    x: np.ndarray,
+    out: np.ndarray,
 ) -> float:
     """Every plane by itself, in blocks: of the response, and with many angles of the fields that are mixed."""
-    k = solution.line.k
-    row = max(1, k.size, 0 if fan.mix is None else fan.angles.size * x.size)
+    k = quadrature.contour.k
+    row = max(1, k.size, 0 if sources.weights is None else sources.angles.size * x.size)
     block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
     for start in range(0, z.size, block):
         rows = slice(start, start + block)
-        fill(s, fan, solution, transfer(k, z[rows]), x, out[:, rows])
+        fill(s, sources, quadrature, transfer(k, z[rows]), x, out[:, rows])
     return 0.0
 
 
@@ -144,11 +152,11 @@ def _some_planes(s: SampledSlab, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return np.concatenate(searched), np.concatenate(tried).astype(int)
 
 
-def _fill_from_few(
+def _fill_low_rank(
     s: SampledSlab,
-    fan: Fan,
-    solution: Solution,
-    transfer: Transfer,
+    sources: AngleInterpolation,
+    quadrature: Quadrature,
+    transfer: TransferFunction,
     z: np.ndarray,
     x: np.ndarray,
     out: np.ndarray,
@@ -158,12 +166,12 @@ def _fill_from_few(
 
     That is seen on others, between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
     """
-    k, x0 = solution.line.k, x - fan.beam.centre
-    right, left = solution.amplitudes_of(s.k0, fan)
+    k, x0 = quadrature.contour.k, x - sources.beam.centre
+    right, left = quadrature.amplitudes_of(s.k0, sources)
     strength = np.max(np.abs(right) + np.abs(left), axis=0)
     searched, tried = _some_planes(s, z)
-    if solution.judged is not None:  # among them those that are nearly dark, where small errors count
-        tried = np.union1d(tried, np.flatnonzero(np.isin(z, solution.judged)))
+    if quadrature.checked_planes is not None:  # among them those that are nearly dark, where small errors count
+        tried = np.union1d(tried, np.flatnonzero(np.isin(z, quadrature.checked_planes)))
     if 2 * searched.size > z.size:
         return None
     h = transfer(k, z[np.concatenate([searched, tried])])
@@ -178,17 +186,17 @@ def _fill_from_few(
     rows, columns = found.rows, found.columns
     there = transfer(k[columns], z)
     summed = np.empty((out.shape[0], rows.size + tried.size, x.size), complex)
-    fill(s, fan, solution, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
+    fill(s, sources, quadrature, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
     ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
     scale = np.max(np.abs(theirs), axis=2)
     scale = np.where(scale > error_estimate.DARK, scale, np.inf)
-    room = rtol - float(np.max(solution.error))  # what the line has left of rtol, if it keeps it
+    room = rtol - float(np.max(quadrature.error))  # what the line has left of rtol, if it keeps it
     allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
     for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
-            mix = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
+            weights = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
             for some, into in zip(ours, out, strict=True):
-                np.matmul(mix, some[:count], out=into)
+                np.matmul(weights, some[:count], out=into)
             # some planes stand for all: the worst of the others may be a few times worse
             error = 5 * np.max(np.max(np.abs(out[:, tried] - theirs), axis=2) / scale, axis=1)
         error = np.maximum(error, 3e-4 * rtol)

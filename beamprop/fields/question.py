@@ -11,7 +11,7 @@ from ..contour import choose
 from ..media.structures import Slab
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab, sample
-from ..sources.angles import Fan, fan
+from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.beams import Beam
 from . import evaluate
 
@@ -40,19 +40,19 @@ class Prepared(NamedTuple):
 
     question: FieldQuestion
     slab: SampledSlab
-    beams: Fan
-    solution: choose.Solution
+    beams: AngleInterpolation
+    quadrature: choose.Quadrature
 
 
 def prepare(question: FieldQuestion, i: int) -> Prepared:
     """Choose the contour of integration for frequency i."""
     s = sample(question.slab, float(question.frequency[i]), backward=True)
-    beams = fan(question.source, question.angle, s.k0, question.rtol * 1e-4)
+    beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
     if question.period is not None:
-        return Prepared(question, s, beams, choose.periodic_solution(s, beams, question.x, question.period))
+        return Prepared(question, s, beams, choose.periodic_quadrature(s, beams, question.x, question.period))
     transfer = transfer_function.through(s, question.source.z0)
-    solution = choose.choose_line(s, beams, transfer, question.x, question.z, question.rtol)
-    return Prepared(question, s, beams, solution)
+    quadrature = choose.choose_contour(s, beams, transfer, question.x, question.z, question.rtol)
+    return Prepared(question, s, beams, quadrature)
 
 
 def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> np.ndarray:
@@ -62,7 +62,7 @@ def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> n
     -------
     (A,) estimated errors of an open field over the largest |p| of a plane; nan with a period.
     """
-    question, s, beams, solution = prepared
+    question, s, beams, quadrature = prepared
     transfer, some_beams = transfer_function.through(s, question.source.z0), beams.taken(angles)
-    added = evaluate.fill_map(s, some_beams, solution, transfer, question.z[planes], question.x, out, question.rtol)
-    return solution.error[angles] + added if question.period is None else np.full(added.shape, np.nan)
+    added = evaluate.fill_map(s, some_beams, quadrature, transfer, question.z[planes], question.x, out, question.rtol)
+    return quadrature.error[angles] + added if question.period is None else np.full(added.shape, np.nan)

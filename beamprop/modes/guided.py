@@ -64,7 +64,7 @@ def find_modes(s: SampledSlab, box: Box, most: float = math.inf) -> tuple[list[M
     if total != again or len(on_axis) > total:
         raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
     found = located(s, box, total, most=most) if total > 0 else []
-    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in told(s, found)]
+    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in with_directions(s, found)]
     return sorted(modes, key=lambda m: m.kx.real), total
 
 
@@ -104,7 +104,7 @@ def located(
     return zeros(f, box, box.right, total, most)
 
 
-def told(s: SampledSlab, found: list[complex], of: DispersionOf = dispersion_of) -> list[Mode]:
+def with_directions(s: SampledSlab, found: list[complex], of: DispersionOf = dispersion_of) -> list[Mode]:
     """Zeros as modes, forward or backward."""
     return [Mode(k, _direction(s, k, found.count(k) > 1, of), 0.0) for k in found]
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..response.sampled_slab import SampledSlab, on_the_right
 from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
-from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, told
+from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, with_directions
 
 #: A mode nearer to the real axis than this, over k0, may be on either side by rounding: a layer without loss beside others with.
 ON_AXIS = 1e-10
@@ -76,7 +76,7 @@ def misplaced(s: SampledSlab, depth: float, band: float, start: float) -> Mispla
 def _with_circles_alone(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles:
     """Circles around the poles that a contour below the axis leaves above it; UNCLEAR where they are too many."""
     try:
-        return with_circles(s, _below(s, depth, band, start))
+        return with_discs(s, _below(s, depth, band, start))
     except TooManyModes:
         return UNCLEAR
 
@@ -110,7 +110,7 @@ def _beside_cut(
     return found
 
 
-def with_circles(
+def with_discs(
     s: SampledSlab, found: list[Mode], others: tuple[complex, ...] = (), of: DispersionOf = dispersion_of
 ) -> MisplacedPoles:
     """Discs around the backward ones among some modes; `others` are misplaced too."""
@@ -142,7 +142,7 @@ def few_modes(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> lis
     found = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
     if len(found) < total:
         raise TooManyModes
-    return told(s, found, of)
+    return with_directions(s, found, of)
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
@@ -235,7 +235,7 @@ def _crossing_at(
     box = Box(crossing, band, 0.0, depth)
     total = winding(f, box.outline(48), FINEST * band, MOST_VALUES, thorough=True)
     forward = _found_above(s, f, box, total)
-    return with_circles(s, known, forward)._replace(crossing=crossing, gap=gap)
+    return with_discs(s, known, forward)._replace(crossing=crossing, gap=gap)
 
 
 def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, band: float) -> tuple[float, float]:

@@ -104,15 +104,15 @@ def _measure(
         return np.broadcast_to(face(kx, shift), (z.size, kx.size))  # the beam at its face, whatever z
 
     for x in _windows(s, beam, ray, window):
-        solution = choose.choose_line(s, single(beam), transfer, x, plane, rtol)
-        h = face(solution.line.k)[None]
-        if window is None and not solution.fft:
-            x = sections.needed(s, beam, solution, h, x)
-        p = evaluate.beam_sum(s, beam, solution, h, x)[0]
+        quadrature = choose.choose_contour(s, single(beam), transfer, x, plane, rtol)
+        h = face(quadrature.contour.k)[None]
+        if window is None and not quadrature.fft:
+            x = sections.needed(s, beam, quadrature, h, x)
+        p = evaluate.beam_sum(s, beam, quadrature, h, x)[0]
         size = np.abs(p)
         if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
             break
-    between = evaluate.evaluator(s, beam, solution, h)
+    between = evaluate.evaluator(s, beam, quadrature, h)
     full = fwhm.full_width(x, p, 0.5, between)
     e2 = fwhm.full_width(x, p, math.exp(-1), between)
     centroid, spread, part = _moments(x, size, window is not None)
@@ -133,7 +133,7 @@ def _measure(
         float(x[part][-1]),
         float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
     )
-    return beamlet, float(solution.error[0]), radiated.error + launched.error
+    return beamlet, float(quadrature.error[0]), radiated.error + launched.error
 
 
 #: What is said of a side without a beam.

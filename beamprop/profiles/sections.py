@@ -19,13 +19,13 @@ import numpy as np
 from .. import memory
 from ..arrays import fft
 from ..contour import choose, near_normal, paths
-from ..contour.paths import Line, OpenPlan, Reach
+from ..contour.paths import Contour, Extent, StraightPlan
 from ..fields import evaluate as field_sums
 from ..modes import misplaced
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import FAINT as DARK
-from ..response.transfer_function import Transfer, shifts
+from ..response.transfer_function import TransferFunction, shifts
 from ..sources.angles import single
 from ..sources.beams import Beam
 from .fwhm import HALF_LEVEL, centroid, crossings, full_width
@@ -131,10 +131,10 @@ def _far_landing(s: SampledSlab, beam: Beam, plane: Plane, path: np.ndarray) -> 
 STEP = 12
 
 
-class Modes(NamedTuple):
+class PlaneWaves(NamedTuple):
     """p(x) = sum right e^{ikx} + left e^{-ikx} over an even line, x from the beam's centre; arrays (F, n)."""
 
-    line: Line
+    contour: Contour
     right: np.ndarray
     left: np.ndarray
 
@@ -142,7 +142,7 @@ class Modes(NamedTuple):
         """Amplitudes of p, dp/dx, ... up to an order: right (ik)^j, then conj(left (-ik)^j); (F, 2 (order + 1), n)."""
         rows = order + 1
         out = np.empty((self.right.shape[0], 2 * rows, self.right.shape[1]), complex)
-        ik = 1j * self.line.k
+        ik = 1j * self.contour.k
         out[:, 0], out[:, rows] = self.right, np.conj(self.left)
         back = -np.conj(ik)
         for j in range(1, rows):
@@ -154,13 +154,13 @@ class Modes(NamedTuple):
         """p and its slopes at positions (F, m), from their amplitudes: (order + 1, F, m)."""
         # plain: sums over k of (ik)^j (right e^{ikx} + (-1)^j left e^{-ikx}). With k = m ds - i sigma, e^{ikx} is a power of
         # e^{i ds x} times e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
-        line, n = self.line, self.line.k.shape[-1]
-        angle = 1j * (np.asarray(line.step)[:, None] * x)[..., None]
-        coarse = np.exp(angle * (line.first + np.arange(0, n, STEP)))
+        contour, n = self.contour, self.contour.k.shape[-1]
+        angle = 1j * (np.asarray(contour.step)[:, None] * x)[..., None]
+        coarse = np.exp(angle * (contour.first + np.arange(0, n, STEP)))
         powers = (coarse[..., None] * np.exp(angle * np.arange(STEP))[..., None, :]).reshape(*x.shape, -1)[..., :n]
         sums = np.moveaxis(powers @ np.swapaxes(slopes, 1, 2), -1, 0)
         rows = sums.shape[0] // 2
-        grow = np.exp(np.asarray(line.sigma)[:, None] * x)
+        grow = np.exp(np.asarray(contour.sigma)[:, None] * x)
         return sums[:rows] * grow + np.conj(sums[rows:]) / grow
 
     def value(self, x: np.ndarray) -> np.ndarray:
@@ -168,22 +168,22 @@ class Modes(NamedTuple):
         return self.at(x, self.slopes(0))[0]
 
 
-def _both_modes(s: SampledSlab, beam: Beam, plane: Plane, plan: OpenPlan) -> tuple[Modes, Modes]:
+def _both_modes(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves]:
     """The plane waves at the plane, on a line and on another to judge it by; one response for both."""
-    lines = paths.open_line(plan), paths.open_line(plan.other())
-    k, weight = (np.concatenate([line[i] for line in lines], axis=-1) for i in (0, 1))
+    contours = paths.straight_contour(plan), paths.straight_contour(plan.other())
+    k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
     h = plane(k)
-    right, left = paths.amplitudes(Line(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
-    right, left, n = right * h, left * h, lines[0].k.shape[-1]
-    return Modes(lines[0], right[:, :n], left[:, :n]), Modes(lines[1], right[:, n:], left[:, n:])
+    right, left = paths.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    right, left, n = right * h, left * h, contours[0].k.shape[-1]
+    return PlaneWaves(contours[0], right[:, :n], left[:, :n]), PlaneWaves(contours[1], right[:, n:], left[:, n:])
 
 
-def _plan(s: SampledSlab, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> OpenPlan:
+def _plan(s: SampledSlab, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
     lo, hi = beam.band(s.k0, rtol * 1e-2)
     source = beam.reach(rtol * 1e-2)
     extent = np.abs(middle - beam.centre) + half
     branch = s.nearest_branch
-    return paths.plan_open(Reach(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
+    return paths.plan_straight(Extent(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
 
 
 class Route(NamedTuple):
@@ -191,7 +191,7 @@ class Route(NamedTuple):
 
     slab: SampledSlab
     plane: Callable[[SampledSlab, np.ndarray], Plane]  #: of a slab and the lengths along z
-    transfer: Callable[[SampledSlab], Transfer]  #: the same for the slab of one frequency
+    transfer: Callable[[SampledSlab], TransferFunction]  #: the same for the slab of one frequency
     z: np.ndarray  #: (F,) where that transfer meets the plane
     path: np.ndarray  #: (F,) length along z
     guided: bool  #: whether there is a slab on the way
@@ -247,7 +247,7 @@ def _taken(route: Route, rows: np.ndarray) -> Route:
     return route._replace(slab=route.slab.take(rows), z=route.z[rows], path=route.path[rows])
 
 
-def _backward(s: SampledSlab, plan: OpenPlan) -> np.ndarray:
+def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
     """Where the lines leave a mode on their wrong side, (F,)."""
     bad = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
     for i in np.flatnonzero(bad) if s.lossless else []:  # what was counted may be forward
@@ -258,43 +258,49 @@ def _backward(s: SampledSlab, plan: OpenPlan) -> np.ndarray:
     return bad
 
 
-def _sampled(modal: Modes, plan: OpenPlan) -> tuple[np.ndarray, np.ndarray]:
+def _sampled(plane_waves: PlaneWaves, plan: StraightPlan) -> tuple[np.ndarray, np.ndarray]:
     """p on an even grid over each whole window: x and p, (F, n)."""
-    line = modal.line
-    m = line.first + np.arange(line.k.shape[-1])
+    contour = plane_waves.contour
+    m = contour.first + np.arange(contour.k.shape[-1])
     n = fft.fast_length(3 * int(np.max(np.abs(m))) + 1)
     x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
-    bins = np.zeros((2, *line.k.shape[:-1], n), complex)
+    bins = np.zeros((2, *contour.k.shape[:-1], n), complex)
     turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
-    bins[0][:, m % n] = modal.right * turn
-    bins[1][:, -m % n] = modal.left * np.conj(turn)
+    bins[0][:, m % n] = plane_waves.right * turn
+    bins[1][:, -m % n] = plane_waves.left * np.conj(turn)
     right, left = fft.transform(bins)
-    grow = np.exp(line.sigma[:, None] * x)
+    grow = np.exp(contour.sigma[:, None] * x)
     return x, right * grow + left / grow
 
 
 def _measured(
-    modal: Modes, second: Modes, plan: OpenPlan, middle: np.ndarray, half: np.ndarray, level: float, rtol: float
+    plane_waves: PlaneWaves,
+    second: PlaneWaves,
+    plan: StraightPlan,
+    middle: np.ndarray,
+    half: np.ndarray,
+    level: float,
+    rtol: float,
 ) -> tuple[Measures, np.ndarray]:
     """Measures from the samples and Newton's method, and where they can be trusted."""
-    x, p = _sampled(modal, plan)
+    x, p = _sampled(plane_waves, plan)
     valid = np.abs(x - middle[:, None]) <= half[:, None]
     size = np.where(valid, np.abs(p), 0.0)
     rows = np.arange(size.shape[0])
     top = np.argmax(size, axis=-1)
     ends = np.argmax(valid, axis=-1), valid.shape[-1] - 1 - np.argmax(valid[:, ::-1], axis=-1)
     dx = plan.window / x.shape[-1]
-    slopes = modal.slopes(2)
-    position = _newton_peak(modal, slopes, x[rows, top], dx)
-    peak = np.abs(modal.at(position[:, None], slopes)[0, :, 0])
+    slopes = plane_waves.slopes(2)
+    position = _newton_peak(plane_waves, slopes, x[rows, top], dx)
+    peak = np.abs(plane_waves.at(position[:, None], slopes)[0, :, 0])
     edge = np.maximum(size[rows, ends[0]], size[rows, ends[1]])
     good = (edge < EDGE * level * peak) & (peak > 0)
     crossing, found = _crossings(x, np.abs(p), valid, top, position, peak, level)
     good &= found
-    edges = _newton_level(modal, slopes, *crossing, level * peak)
+    edges = _newton_level(plane_waves, slopes, *crossing, level * peak)
     check = np.concatenate([edges, position[:, None]], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        error = 1.5 * np.max(np.abs(modal.at(check, slopes)[0] - second.value(check)), axis=-1) / peak
+        error = 1.5 * np.max(np.abs(plane_waves.at(check, slopes)[0] - second.value(check)), axis=-1) / peak
         power = np.where(valid, np.abs(p) ** 2, 0.0)
         place = (power * x).sum(-1) / power.sum(-1)
     error = np.nan_to_num(error, nan=1.0)
@@ -330,11 +336,11 @@ def _crossings(
     return (inner, outer, inner + share * (outer - inner)), found
 
 
-def _newton_peak(modal: Modes, slopes: np.ndarray, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
+def _newton_peak(plane_waves: PlaneWaves, slopes: np.ndarray, start: np.ndarray, dx: np.ndarray) -> np.ndarray:
     """Where |p|^2 is largest within a sample of start."""
     x = start
     for _ in range(5):
-        p, slope, bend = modal.at(x[:, None], slopes)[..., 0]
+        p, slope, bend = plane_waves.at(x[:, None], slopes)[..., 0]
         first = (p.conj() * slope).real
         curve = np.abs(slope) ** 2 + (p.conj() * bend).real
         step = np.where(curve < 0, -first / np.where(curve < 0, curve, 1.0), np.sign(first) * dx / 4)
@@ -345,12 +351,17 @@ def _newton_peak(modal: Modes, slopes: np.ndarray, start: np.ndarray, dx: np.nda
 
 
 def _newton_level(
-    modal: Modes, slopes: np.ndarray, inner: np.ndarray, outer: np.ndarray, guess: np.ndarray, target: np.ndarray
+    plane_waves: PlaneWaves,
+    slopes: np.ndarray,
+    inner: np.ndarray,
+    outer: np.ndarray,
+    guess: np.ndarray,
+    target: np.ndarray,
 ) -> np.ndarray:
     """Where |p| crosses the target (F,) between inner (above it) and outer (below it), (F, 2): bracketed Newton."""
     x, size = guess, np.abs(outer - inner)
     for _ in range(9):
-        p, slope, _ = modal.at(x, slopes)
+        p, slope, _ = plane_waves.at(x, slopes)
         excess = np.abs(p) ** 2 - target[:, None] ** 2
         inner, outer = np.where(excess >= 0, x, inner), np.where(excess >= 0, outer, x)
         steep = 2 * (p.conj() * slope).real
@@ -366,7 +377,13 @@ def _newton_level(
 
 
 def _measured_alone(
-    s: SampledSlab, beam: Beam, transfer: Transfer, way: tuple[float, float], rtol: float, level: float, guided: bool
+    s: SampledSlab,
+    beam: Beam,
+    transfer: TransferFunction,
+    way: tuple[float, float],
+    rtol: float,
+    level: float,
+    guided: bool,
 ) -> tuple[float, float, float, int, float]:
     """What `Measures` holds, across the plane z, in a window that grows until its edges are below the level.
 
@@ -379,11 +396,11 @@ def _measured_alone(
     for _ in range(9):
         step = min(np.pi / (2 * max(abs(k) for k in beam.band(s.k0, 1e-4))), half / 64)
         x = middle + half * np.linspace(-1, 1, 2 * min(math.ceil(half / step), 50_000) + 1)
-        solution = choose.choose_line(s, single(beam), transfer, x, planes, rtol, guided)
-        h = transfer(solution.line.k, planes)
-        if not solution.fft:
-            x = needed(s, beam, solution, h, x)
-        p = field_sums.beam_sum(s, beam, solution, h, x)[0]
+        quadrature = choose.choose_contour(s, single(beam), transfer, x, planes, rtol, guided)
+        h = transfer(quadrature.contour.k, planes)
+        if not quadrature.fft:
+            x = needed(s, beam, quadrature, h, x)
+        p = field_sums.beam_sum(s, beam, quadrature, h, x)[0]
         size = np.abs(p)
         if max(size[0], size[-1]) < EDGE * level * size.max():
             break
@@ -391,8 +408,8 @@ def _measured_alone(
         if guided and _runs_on(seen, s.lossless):
             break
         half *= 2
-    found = full_width(x, p, level, field_sums.evaluator(s, beam, solution, h))
-    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(solution.error[0])
+    found = full_width(x, p, level, field_sums.evaluator(s, beam, quadrature, h))
+    return found.width, found.peak, centroid(x, p), crossings(p, level * found.peak), float(quadrature.error[0])
 
 
 class _Rim(NamedTuple):
@@ -432,13 +449,13 @@ def _runs_on(seen: list[_Rim], lossless: bool) -> bool:
 FAINT = 1e-4
 
 
-def needed(s: SampledSlab, beam: Beam, solution: choose.Solution, h: np.ndarray, x: np.ndarray) -> np.ndarray:
+def needed(s: SampledSlab, beam: Beam, quadrature: choose.Quadrature, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """As many of even positions as those plane waves need that get there: of a sharp edge's most die on the way."""
-    right, left = solution.amplitudes_of(s.k0, single(beam))
+    right, left = quadrature.amplitudes_of(s.k0, single(beam))
     strength = np.abs(h[0]) * (np.abs(right[0]) + np.abs(left[0]))
-    largest = float(np.max(np.abs(solution.line.k.real), where=strength > FAINT * strength.max(), initial=0.0))
+    largest = float(np.max(np.abs(quadrature.contour.k.real), where=strength > FAINT * strength.max(), initial=0.0))
     count = 2 * max(64, math.ceil((x[-1] - x[0]) * largest / np.pi)) + 1
-    memory.check_terms(solution.line.k.size, min(count, x.size))
+    memory.check_terms(quadrature.contour.k.size, min(count, x.size))
     return x if count >= x.size else np.linspace(x[0], x[-1], count)
 
 

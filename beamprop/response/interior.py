@@ -14,7 +14,7 @@ from .layer import State, at_frequencies, entire, layer_back, one_layer, several
 from .recursion import Places, Station, places_of, segment_of
 
 
-def fill_inside(
+def fill_interior(
     stations: list[Station],
     omega: np.ndarray,
     kx: np.ndarray,

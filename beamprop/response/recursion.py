@@ -26,7 +26,7 @@ class Station(NamedTuple):
     faces: dict[int, State]
 
 
-def march(
+def carry_back(
     segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State, z: np.ndarray
 ) -> tuple[State, list[Station]]:
     """Carry the outgoing state back through all segments."""

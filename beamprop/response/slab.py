@@ -8,9 +8,9 @@ import numpy as np
 
 from ..conventions import outgoing_kz
 from ..media.structures import FluidValues, SegmentValues
-from .interior import fill_inside
+from .interior import fill_interior
 from .layer import State
-from .recursion import Station, march
+from .recursion import Station, carry_back
 
 
 class Response(NamedTuple):
@@ -33,7 +33,7 @@ def _near(
     kz1 = outgoing_kz(kx, omega, *front)
     kz2 = kz1 if _alike(front, behind) else outgoing_kz(kx, omega, *behind)
     exit_state = State(np.ones_like(kz2), 1j * kz2 / behind.rho_z, np.zeros_like(kz2))
-    near, stations = march(segments, omega, kx, exit_state, z)
+    near, stations = carry_back(segments, omega, kx, exit_state, z)
     return kz1, near, stations
 
 
@@ -87,7 +87,7 @@ def solve(
         r = backward / forward
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
         if z.size:
-            inside = fill_inside(stations, omega, kx, z, near.log, per_incident)
+            inside = fill_interior(stations, omega, kx, z, near.log, per_incident)
         wall = _wall(segments)
         if np.any(np.isfinite(wall)):
             blocked = np.isfinite(wall) & (kx != 0)

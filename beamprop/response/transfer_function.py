@@ -14,7 +14,7 @@ from .sampled_slab import SampledSlab
 
 #: h(kx, z): what a plane wave of the source's spectrum has become at z; (Z, n).
 #: h(kx, z, shift): the same at kx (1 + shift) and w (1 - shift), to see what rounding does.
-Transfer = Callable[..., np.ndarray]
+TransferFunction = Callable[..., np.ndarray]
 
 
 def factors(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
@@ -37,7 +37,7 @@ def factors(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndar
     return out
 
 
-def through(s: SampledSlab, z0: float) -> Transfer:
+def through(s: SampledSlab, z0: float) -> TransferFunction:
     """The transfer through a slab from the launch plane z0."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
@@ -46,7 +46,7 @@ def through(s: SampledSlab, z0: float) -> Transfer:
     return transfer
 
 
-def free(s: SampledSlab) -> Transfer:
+def free(s: SampledSlab) -> TransferFunction:
     """The transfer through the medium in front alone, over the distance z."""
 
     def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:

@@ -18,18 +18,18 @@ import numpy as np
 from .beams import Beam, sin_degrees
 
 
-class Fan(NamedTuple):
+class AngleInterpolation(NamedTuple):
     """Beams that are summed, and the matrix (A, B) that makes the asked ones of them; None where they are the asked ones."""
 
     beam: Beam  #: any of them: what they share
     angles: np.ndarray  #: (B,) degree
-    mix: np.ndarray | None = None
-    mixed_angles: np.ndarray | None = None  #: (A,) degree, those that `mix` makes
+    weights: np.ndarray | None = None
+    requested_angles: np.ndarray | None = None  #: (A,) degree, those that `weights` makes
 
     @property
-    def asked(self) -> np.ndarray:
+    def requested(self) -> np.ndarray:
         """The asked angles: (A,) degree."""
-        return self.angles if self.mixed_angles is None else self.mixed_angles
+        return self.angles if self.requested_angles is None else self.requested_angles
 
     def spectra(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx) of each: (B, n)."""
@@ -44,14 +44,14 @@ class Fan(NamedTuple):
 
     def spread(self, count: int) -> np.ndarray:
         """Indices of `count` asked angles, or fewer, evenly through all of them in growing order: both extremes and some between."""
-        places = np.linspace(0, self.asked.size - 1, count).round().astype(int)
-        return np.argsort(self.asked)[np.unique(places)]
+        places = np.linspace(0, self.requested.size - 1, count).round().astype(int)
+        return np.argsort(self.requested)[np.unique(places)]
 
-    def taken(self, asked: slice | np.ndarray) -> Fan:
+    def taken(self, requested: slice | np.ndarray) -> AngleInterpolation:
         """Some of the asked beams."""
-        if self.mix is None:
-            return self._replace(angles=self.angles[asked])
-        return self._replace(mix=self.mix[asked], mixed_angles=self.asked[asked])
+        if self.weights is None:
+            return self._replace(angles=self.angles[requested])
+        return self._replace(weights=self.weights[requested], requested_angles=self.requested[requested])
 
     def band(self, k0: float, tolerance: float) -> float:
         """Largest |kx| at which a spectrum exceeds `tolerance` of its largest value [rad/m]."""
@@ -70,23 +70,23 @@ class Fan(NamedTuple):
         ends = [self.at(float(a)).spectrum_ends(k0) for a in self.angles]  # type: ignore[attr-defined]
         return np.unique(np.abs(ends))
 
-    def mixed(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
+    def interpolated_to(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
         """The asked fields (A, ...) of those that were summed (B, ...), complex."""
-        if self.mix is None:
+        if self.weights is None:
             return summed
         flat = np.ascontiguousarray(summed).reshape(summed.shape[0], -1).view(float)
         if out is None:
-            out = np.empty((self.mix.shape[0], *summed.shape[1:]), complex)
-        np.matmul(self.mix, flat, out=out.view(float).reshape(out.shape[0], -1))
+            out = np.empty((self.weights.shape[0], *summed.shape[1:]), complex)
+        np.matmul(self.weights, flat, out=out.view(float).reshape(out.shape[0], -1))
         return out
 
 
-def single(beam: Beam) -> Fan:
+def single(beam: Beam) -> AngleInterpolation:
     """A beam by itself."""
-    return Fan(beam, np.array([float(beam.angle)]))
+    return AngleInterpolation(beam, np.array([float(beam.angle)]))
 
 
-def fan(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> Fan:
+def interpolate_angles(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> AngleInterpolation:
     """A source at angles (A,) [degree]: summed at a few Chebyshev nodes in sin(angle) where those are fewer."""
     smooth = getattr(beam, "shifts_smoothly", None)
     if angles.size > 4 and smooth is not None and smooth(tolerance):
@@ -96,8 +96,10 @@ def fan(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> Fan:
         if count < 0.6 * angles.size:
             turn = np.pi * (np.arange(count) + 0.5) / count
             nodes = middle + half * np.cos(turn)
-            return Fan(beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles)
-    return Fan(beam, angles)
+            return AngleInterpolation(
+                beam, np.degrees(np.arcsin(nodes)), _barycentric(sines, nodes, np.sin(turn)), angles
+            )
+    return AngleInterpolation(beam, angles)
 
 
 def nodes_for(c: float, tolerance: float) -> int:

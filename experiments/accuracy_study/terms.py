@@ -200,7 +200,7 @@ TERMS = [
         "mixing of angles", "contour.error_estimate", "_difference", "error += 3 *", "error += 0 *", (MIXED,),
     ),
     Term(
-        "planes made of a few", "fields.evaluate", "_fill_from_few", "return error", "return 0 * error", tuple(range(1, 600, 5)),
+        "planes made of a few", "fields.evaluate", "_fill_low_rank", "return error", "return 0 * error", tuple(range(1, 600, 5)),
     ),
     Term(
         "rounding of long phases", "contour.error_estimate", "_difference",
@@ -212,7 +212,7 @@ TERMS = [
     ),
     Term(
         "brightness outside the window", "contour.error_estimate", "_difference",
-        "largest = np.maximum(largest, checks.bright)", "largest = largest * 1.0", (FAR,), False,
+        "largest = np.maximum(largest, checks.peaks_outside)", "largest = largest * 1.0", (FAR,), False,
     ),
     Term(
         "planes too dark to be seen", "contour.error_estimate", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (SHADOW, BLACK), False,

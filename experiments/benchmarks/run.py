@@ -94,7 +94,7 @@ def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     middle, half = sections.landing(batch, BEAM, sections.far_face(batch, BEAM.z0))
     plan = sections._plan(batch, BEAM, np.array([SLAB.thickness]), middle, half, 1e-8)
-    return sampled_slab.sample(SLAB, frequency), paths.open_line(plan).k[0]
+    return sampled_slab.sample(SLAB, frequency), paths.straight_contour(plan).k[0]
 
 
 def angles(options: argparse.Namespace) -> list[Row]:
