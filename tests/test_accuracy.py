@@ -227,7 +227,7 @@ def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
         solution = choose(*args)
         return solution._replace(error=solution.error + 3e-4)
 
-    monkeypatch.setattr(contour_choice, "choose_line", worse)
+    monkeypatch.setattr(contour_choice, "choose_contour", worse)
     monkeypatch.setattr(
         sections, "_measured", lambda first, *_: (sections.Measures(*5 * [np.zeros(1)]), np.zeros(1, bool))
     )

@@ -365,7 +365,7 @@ def test_many_beams_at_once(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_an_open_line(seed):
+def test_a_straight_contour(seed):
     """chi = erfc(-k/delta)/2 at every node, for one frequency and for several."""
     from scipy.special import erfc
 
@@ -494,7 +494,7 @@ def test_errors_of_many_angles_are_judged_by_some(count, monkeypatch):
         np.linspace(-85, 85, count)[np.random.default_rng(0).permutation(count)],
     )
     some = bp.field(slab, beam, 2500.0, x, z, angle=angles)
-    monkeypatch.setattr(error_estimate, "JUDGED", 1000)
+    monkeypatch.setattr(error_estimate, "ESTIMATED", 1000)
     all_of_them = bp.field(slab, beam, 2500.0, x, z, angle=angles)
     np.testing.assert_array_equal(some.p, all_of_them.p)
     assert np.all(some.error_estimate > 0.5 * all_of_them.error_estimate)
@@ -592,7 +592,7 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
     choose = contour_choice.choose_contour
     monkeypatch.setattr(
-        contour_choice, "choose_line", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
+        contour_choice, "choose_contour", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
     )
     assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
 

@@ -116,7 +116,7 @@ STUDY = sorted((ROOT / "experiments" / "accuracy_study").glob("*.py"))
 TRUTH = ("source", "medium", "near_axis", "misplaced", "contour", "bands", "reference")
 #: A file of the study imports only from those before it.
 ORDER = ("slabs", "source", "cases", "hard", "numbering", "medium", "near_axis", "misplaced", "contour", "bands", "reference",
-         "study", "report", "limit", "terms", "command")  # fmt: skip
+         "study", "report", "limit", "term_cases", "terms", "command")  # fmt: skip
 
 
 def used(path):

@@ -11,10 +11,9 @@ import beamprop as bp
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import stretches
 from beamprop.fields import evaluate
-from beamprop.modes import misplaced
 from beamprop.modes.guided import dispersion_of
 from beamprop.profiles import fwhm, sections
-from beamprop.response.sampled_slab import sample
+from beamprop.response.sampled_slab import FluidSlab, sample
 from beamprop.response.transfer_function import through
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
@@ -35,7 +34,7 @@ def chosen(monkeypatch):
         found.append(choose(*arguments, **options))
         return found[-1]
 
-    monkeypatch.setattr(contour_choice, "choose_line", watched)
+    monkeypatch.setattr(contour_choice, "choose_contour", watched)
     return found
 
 
@@ -220,8 +219,8 @@ def with_loss(slab, loss):
 
 def test_the_loss_that_a_refusal_names_does(monkeypatch):
     """And it is found by the count of modes at a few losses."""
-    losses, make = set(), misplaced.with_loss
-    monkeypatch.setattr(misplaced, "with_loss", lambda s, loss: losses.add(loss) or make(s, loss))
+    losses, make = set(), FluidSlab.with_loss
+    monkeypatch.setattr(FluidSlab, "with_loss", lambda s, loss: losses.add(loss) or make(s, loss))
     slab = bp.Slab.uniform(bp.Fluid(-3.0, -100_000.0), 50.0) + bp.Slab.uniform(bp.Fluid(2.0, 200_000.0), 0.03)
     question = bp.GaussianBeam(0.05, 20.0, z0=-0.01), F, np.linspace(-0.3, 0.3, 31), [0.0, slab.thickness]
     with pytest.raises(ValueError, match="slab: it guides more backward waves") as refused:

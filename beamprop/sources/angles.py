@@ -5,7 +5,7 @@ the launch profile, |xi| <= reach: a function of s that a polynomial through a f
 any number of angles are made, by a real matrix, of those at the nodes. The polynomial of r nodes errs by no more than
 2 (c/2)^r / r!, c = k0 reach (s_max - s_min)/2, of what the source sends (the next Bessel function of the Jacobi-Anger series).
 The error goes with s as the Chebyshev polynomial T_r, for what is left out, T_(r+j), looks like -T_(r-j) at the nodes, and
-T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`judge`).
+T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`contour.error_estimate`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from .beams import Beam, sin_degrees
 
 
 class AngleInterpolation(NamedTuple):
-    """Beams that are summed, and the matrix (A, B) that makes the asked ones of them; None where they are the asked ones."""
+    """Beams that are summed, and the matrix (A, B) that makes the requested ones of them; None where they are the requested ones."""
 
     beam: Beam  #: any of them: what they share
     angles: np.ndarray  #: (B,) degree
@@ -28,7 +28,7 @@ class AngleInterpolation(NamedTuple):
 
     @property
     def requested(self) -> np.ndarray:
-        """The asked angles: (A,) degree."""
+        """The requested angles: (A,) degree."""
         return self.angles if self.requested_angles is None else self.requested_angles
 
     def spectra(self, kx: np.ndarray, k0: float) -> np.ndarray:

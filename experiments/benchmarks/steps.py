@@ -51,7 +51,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "`field`, 1000 z × 1024 x": (
         field_map,
         {
-            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_line"),
+            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "of it: poles on the wrong side": ("modes/misplaced.py", "misplaced"),
             "of it: two contours compared": ("contour/error_estimate.py", "difference"),
             "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
@@ -64,7 +64,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "1000 angles, exit plane": (
         angles,
         {
-            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_line"),
+            "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "fields at the nodes": ("contour/paths.py", "fft_sum"),
             "angle interpolation": ("sources/angles.py", "mixed"),
             "labels, provenance": ("api/field_question.py", "labelled"),
