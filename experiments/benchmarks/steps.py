@@ -66,7 +66,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "fields at the nodes": ("contour/paths.py", "fft_sum"),
-            "angle interpolation": ("sources/angles.py", "mixed"),
+            "angle interpolation": ("sources/angles.py", "interpolated_to"),
             "labels, provenance": ("api/field_question.py", "labelled"),
         },
     ),
