@@ -32,13 +32,21 @@ if TYPE_CHECKING:
     from .io.datasets import provenance
     from .io.storage import load, save
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
-    from .media.structures import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
-    from .sources.beams import GaussianBeam, Profile, Slits
+    from .media.fluids import AIR, Fluid
+    from .media.lmmd import lmmd_cell
+    from .media.structures import Cell, Layer, Membrane, Slab
+    from .sources.gaussian import GaussianBeam
+    from .sources.profile import Profile
+    from .sources.slits import Slits
 
 _HOMES = {
-    "media.structures": ("AIR", "Cell", "Fluid", "Layer", "Membrane", "Slab", "lmmd_cell"),
+    "media.fluids": ("AIR", "Fluid"),
+    "media.structures": ("Cell", "Layer", "Membrane", "Slab"),
+    "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
-    "sources.beams": ("GaussianBeam", "Profile", "Slits"),
+    "sources.gaussian": ("GaussianBeam",),
+    "sources.profile": ("Profile",),
+    "sources.slits": ("Slits",),
     "api.beam_measures": ("beam_measures",),
     "api.beam_width": ("beam_width",),
     "api.bloch": ("bloch",),

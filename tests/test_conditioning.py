@@ -7,7 +7,7 @@ import oracles
 import pytest
 
 import beamprop as bp
-from beamprop.media.structures import materials, slab_values
+from beamprop.media.values import materials, slab_values
 from beamprop.response import solve, solve_checked
 from beamprop.response.reflection import Stack, reflect
 

@@ -14,8 +14,12 @@ from fem_reference import periodic_field, relative_error
 from beamprop import fem
 from beamprop.fem import solvers, strip
 from beamprop.io.datasets import provenance
-from beamprop.media.structures import AIR, Cell, Fluid, Layer, Membrane, Slab, lmmd_cell
-from beamprop.sources.beams import GaussianBeam, Profile, Slits
+from beamprop.media.fluids import AIR, Fluid
+from beamprop.media.lmmd import lmmd_cell
+from beamprop.media.structures import Cell, Layer, Membrane, Slab
+from beamprop.sources.gaussian import GaussianBeam
+from beamprop.sources.profile import Profile
+from beamprop.sources.slits import Slits
 
 FREQUENCY = 2500.0
 WAVELENGTH = 343.0 / FREQUENCY

@@ -9,7 +9,7 @@ import beamprop as bp
 from beamprop import response
 from beamprop.contour import paths
 from beamprop.conventions import outgoing_kz
-from beamprop.media import structures
+from beamprop.media.values import slab_values
 
 F = 2500.0
 OMEGA = 2 * np.pi * F
@@ -57,7 +57,7 @@ def amplitudes(slab, kx, z=None):
     """r, t and p at depths z inside, of one plane wave or an array of them."""
     f, kx = np.array([F]), np.atleast_1d(np.asarray(kx, complex))
     out = response.solve(
-        structures.slab_values(slab, f),
+        slab_values(slab, f),
         slab.before.at(f),
         slab.after.at(f),
         np.array([[OMEGA]]),

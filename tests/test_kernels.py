@@ -11,7 +11,7 @@ from beamprop.arrays import fft, matmul
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import error_estimate, paths
 from beamprop.fields import evaluate, low_rank
-from beamprop.media.structures import layer_values
+from beamprop.media.values import layer_values
 from beamprop.profiles import sections
 from beamprop.response import cell as cell_kernels
 from beamprop.response import interior, recursion, sampled_slab

@@ -7,7 +7,7 @@ from oracles import slab_response
 import beamprop as bp
 from beamprop import response
 from beamprop.conventions import outgoing_kz
-from beamprop.media import structures
+from beamprop.media.values import slab_values
 from beamprop.response import layer as layer_kernels
 
 F = 2500.0
@@ -30,7 +30,7 @@ def inside(slab, kx, z):
     """p at depths z per unit incident pressure, (Z, n)."""
     f, kx = np.array([F]), np.atleast_1d(np.asarray(kx, complex))
     return response.solve(
-        structures.slab_values(slab, f),
+        slab_values(slab, f),
         slab.before.at(f),
         slab.after.at(f),
         np.array([[OMEGA]]),

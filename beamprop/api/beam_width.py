@@ -14,7 +14,7 @@ from ..media.structures import Slab
 from ..profiles import sections
 from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
-from ..sources.beams import Beam, moved_to_origin
+from ..sources.base import Beam, moved_to_origin
 from . import checks
 
 

@@ -9,7 +9,9 @@ import xarray as xr
 
 from .. import response, validate
 from ..io import datasets
-from ..media.structures import AIR, Cell, Fluid, layer_values
+from ..media.fluids import AIR, Fluid
+from ..media.structures import Cell
+from ..media.values import layer_values
 from . import checks
 
 

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
-from ..media.structures import Fluid, Slab
-from ..sources.beams import Beam, sin_degrees
+from ..media.fluids import Fluid
+from ..media.structures import Slab
+from ..sources.base import Beam, sin_degrees
 
 
 class AccuracyWarning(UserWarning):

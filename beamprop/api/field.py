@@ -11,7 +11,7 @@ from .. import memory, validate
 from ..fields.question import fill, prepare
 from ..media.structures import Slab
 from ..progress import Progress, watched
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import checks
 from .field_question import checked_question, labelled, largest
 

@@ -12,7 +12,7 @@ from ..contour import paths
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
-from ..sources.beams import Beam, moved_to_origin
+from ..sources.base import Beam, moved_to_origin
 from . import checks
 
 

@@ -16,7 +16,7 @@ from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
 from ..progress import Progress, watched
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import checks
 from .field_question import checked_question, labelled, largest
 

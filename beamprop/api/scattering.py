@@ -12,7 +12,8 @@ import xarray as xr
 from .. import memory, response, validate
 from ..conventions import outgoing_kz
 from ..io import datasets
-from ..media.structures import Slab, materials, slab_values
+from ..media.structures import Slab
+from ..media.values import materials, slab_values
 from . import checks
 
 

@@ -148,7 +148,8 @@ OUTPUT = all_of(
 
 def cell_of(o: dict[str, Any]) -> Any:
     """The cell and its background."""
-    from ..media.structures import Fluid, lmmd_cell
+    from ..media.fluids import Fluid
+    from ..media.lmmd import lmmd_cell
 
     background = Fluid.from_speed(o["density"], o["sound_speed"])
     rho_m, delta_rho = o["rho_m"], o["delta_rho"]
@@ -160,7 +161,8 @@ def cell_of(o: dict[str, Any]) -> Any:
 def slab_of(o: dict[str, Any]) -> Slab:
     """The slab, or an effective medium in its place."""
     from ..media.effective import lmmd_emt_slab, standard_emt
-    from ..media.structures import Fluid, Slab
+    from ..media.fluids import Fluid
+    from ..media.structures import Slab
 
     cell, before = cell_of(o)
     after = before
@@ -179,6 +181,6 @@ def slab_of(o: dict[str, Any]) -> Slab:
 
 def beam_of(o: dict[str, Any], z0: float = 0.0) -> Any:
     """The beam, launched at z0."""
-    from ..sources.beams import GaussianBeam
+    from ..sources.gaussian import GaussianBeam
 
     return GaussianBeam(o["fwhm"], 0.0, o["x0"], z0, o["width_of"], o["form"])

@@ -15,7 +15,7 @@ from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import error_estimate, paths, peak_outside, residues, stretches
 from .error_estimate import Checks
 from .paths import BentPlan, Contour, Extent

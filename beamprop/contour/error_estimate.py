@@ -17,7 +17,7 @@ from ..memory import check_contour
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction, shifts
 from ..sources.angles import AngleInterpolation
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import near_normal, paths
 from .paths import Contour, Extent
 

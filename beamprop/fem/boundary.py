@@ -19,8 +19,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media.structures import Fluid, Slab
-from ..sources.beams import Beam
+from ..media.fluids import Fluid
+from ..media.structures import Slab
+from ..sources.base import Beam
 from .strip import Strip, line_basis, line_dofs
 
 

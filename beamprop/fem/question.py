@@ -13,7 +13,7 @@ from .. import validate
 from ..io import datasets
 from ..media.structures import Slab
 from ..progress import Progress, Steps
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import boundary, solvers, strip
 from .task import Plan, Task, make_task, predict, wavenumber
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import memory, validate
 from ..media.structures import Slab
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from ..validate import as_count, as_number
 from . import boundary, solvers, strip
 

@@ -17,7 +17,7 @@ from ..contour.choose import Quadrature, fft_is_cheaper
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, single
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from .low_rank import cross, mixing
 
 

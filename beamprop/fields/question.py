@@ -12,7 +12,7 @@ from ..media.structures import Slab
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab, sample
 from ..sources.angles import AngleInterpolation, interpolate_angles
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import evaluate
 
 

@@ -19,21 +19,24 @@ from .. import validate
 from .._version import __version__
 from ..conventions import LABELS, label
 from ..media import effective as _homogenize
-from ..media import structures as _media
-from ..sources import beams as _beam
+from ..media.fluids import Fluid
+from ..media.structures import Cell, Layer, Membrane, Slab
+from ..sources.gaussian import GaussianBeam
+from ..sources.profile import Profile
+from ..sources.slits import Slits
 
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
 _RECORDS: dict[str, type] = {
     cls.__name__: cls
     for cls in (
-        _media.Fluid,
-        _media.Layer,
-        _media.Membrane,
-        _media.Cell,
-        _media.Slab,
-        _beam.GaussianBeam,
-        _beam.Profile,
-        _beam.Slits,
+        Fluid,
+        Layer,
+        Membrane,
+        Cell,
+        Slab,
+        GaussianBeam,
+        Profile,
+        Slits,
         *_homogenize.FUNCTIONS,
     )
 }
@@ -87,7 +90,7 @@ def rebuild(record: Any) -> Any:
         return complex(float(record["re"]), float(record["im"]))
     fields = {k: rebuild(v) for k, v in record.items() if k != "type"}
     cls = _RECORDS[record["type"]]
-    return _media.Slab.stack(**fields) if cls is _media.Slab else cls(**fields)
+    return Slab.stack(**fields) if cls is Slab else cls(**fields)
 
 
 def make(

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from .. import validate
-from .structures import Cell, Fluid, FluidValues, Layer, Membrane, Slab
+from .fluids import Fluid, FluidValues
+from .structures import Cell, Layer, Membrane, Slab
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from ..contour import choose, error_estimate
 from ..fields import evaluate
 from ..response.sampled_slab import SampledSlab
 from ..sources.angles import single
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from . import fwhm, power, sections
 from .power import NOTHING, Radiated
 

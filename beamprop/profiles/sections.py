@@ -27,7 +27,7 @@ from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import FAINT as DARK
 from ..response.transfer_function import TransferFunction, shifts
 from ..sources.angles import single
-from ..sources.beams import Beam
+from ..sources.base import Beam
 from .fwhm import HALF_LEVEL, centroid, crossings, full_width
 
 #: h(kx) at one plane for each frequency: (F, n) -> (F, n).

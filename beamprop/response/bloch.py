@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..media.structures import LayerValues, SegmentValues
+from ..media.values import LayerValues, SegmentValues
 from .cell import bloch_phase, cell_matrix
 from .conditioning import ROUNDING, SHIFT
 from .layer import perturbed

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arrays.matmul import BLOCK, UNTHREADED, small_product
 from ..conventions import principal_root
-from ..media.structures import LayerValues
+from ..media.values import LayerValues
 from .layer import State, at_frequencies, several_layers
 
 TINY = 1e-300

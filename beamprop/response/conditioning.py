@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media.structures import FluidValues, Materials, SegmentValues
+from ..media.fluids import FluidValues
+from ..media.values import Materials, SegmentValues
 from .layer import at_frequencies, perturbed
 from .reflection import Stack, reflect
 from .slab import Response, solve

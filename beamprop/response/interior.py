@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays.matmul import BLOCK, small_product
-from ..media.structures import LayerValues, SegmentValues
+from ..media.values import LayerValues, SegmentValues
 from .cell import TINY, BlochPhase, Matrix, faded, matrix_back, power_back, times
 from .layer import State, at_frequencies, entire, layer_back, one_layer, several_layers, terms_for
 from .recursion import Places, Station, places_of, segment_of

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media.structures import LayerValues, SegmentValues
+from ..media.values import LayerValues, SegmentValues
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
 SCALE_FROM = 30.0

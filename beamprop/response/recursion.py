@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays.matmul import BLOCK
-from ..media.structures import LayerValues, SegmentValues
+from ..media.values import LayerValues, SegmentValues
 from .cell import BlochPhase, Matrix, bloch_phase, cell_matrix, power_back
 from .layer import Entire, State, layer_back, normalised, several_layers
 

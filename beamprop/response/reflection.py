@@ -27,7 +27,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media.structures import FluidValues, Materials, SegmentValues
+from ..media.fluids import FluidValues
+from ..media.values import Materials, SegmentValues
 from .cell import BlochPhase, Matrix, bloch_phase, cell_matrix
 from .layer import perturbed
 

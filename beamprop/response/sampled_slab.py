@@ -12,7 +12,9 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media.structures import FluidValues, LayerValues, SegmentValues, Slab, slab_values
+from ..media.fluids import FluidValues
+from ..media.structures import Slab
+from ..media.values import LayerValues, SegmentValues, slab_values
 from .cell import bloch_phase, cell_matrix
 from .conditioning import SHIFT
 from .layer import at_frequencies, perturbed

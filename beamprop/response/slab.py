@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..conventions import outgoing_kz
-from ..media.structures import FluidValues, SegmentValues
+from ..media.fluids import FluidValues
+from ..media.values import SegmentValues
 from .interior import fill_interior
 from .layer import State
 from .recursion import Station, carry_back
@@ -61,7 +62,7 @@ def solve(
 
     Parameters
     ----------
-    segments : from `media.structures.slab_values`, F frequencies
+    segments : from `media.values.slab_values`, F frequencies
     before, after : properties of the half-spaces, arrays (F,)
     omega : (F, 1), rad/s
     kx : (F, n) complex, rad/m

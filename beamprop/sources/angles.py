@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .beams import Beam, sin_degrees
+from .base import Beam, sin_degrees
 
 
 class AngleInterpolation(NamedTuple):

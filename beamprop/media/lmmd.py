@@ -1,0 +1,66 @@
+"""The paper's layered cell of large mass-density modulation depth (LMMD)."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .. import memory, validate
+from ..validate import as_complex, as_count, as_number
+from .fluids import AIR, Fluid
+from .structures import Cell, Layer
+
+
+def lmmd_cell(
+    rho_m: complex = 0.05 + 0.05j,
+    delta_rho: float = 0.025,
+    n_layers: int = 10,
+    eta: float = 1 / 60,
+    design_frequency: float = 2500.0,
+    background: Fluid = AIR,
+) -> Cell:
+    """One period of the rapidly modulated medium of large modulation depth, the paper's Eq. (10).
+
+    Layer j = 1..N has the density ``rho_m + (1/eta + i delta_rho) cos(2 pi (j-1)/N)`` relative to the
+    background's, the background's bulk modulus, and the thickness ``eta lambda0 / N``.
+
+    Parameters
+    ----------
+    rho_m : complex
+        Mean relative density.
+    delta_rho : float
+        Modulation of the loss.
+    n_layers : int
+        N, layers in a period.
+    eta : float
+        Period over the background's wavelength at `design_frequency`.
+    design_frequency : float, Hz
+    background : Fluid
+        Isotropic; evaluated at `design_frequency` if it is dispersive.
+
+    Examples
+    --------
+    >>> cell = bp.lmmd_cell(0.05, 0)  # without loss
+    >>> [round(layer.fluid.density.real / 1.25, 2) for layer in cell.layers][:3]
+    [60.05, 48.59, 18.59]
+    """
+    n_layers = as_count(n_layers, "n_layers")
+    memory.check("n_layers", 1000.0 * n_layers, f"{n_layers:.3g} layers", "take fewer")
+    eta = as_number(eta, "eta", positive=True)
+    design_frequency = as_number(design_frequency, "design_frequency", positive=True)
+    delta_rho = as_number(delta_rho, "delta_rho")
+    rho_m = as_complex(rho_m, "rho_m")
+    if not np.isfinite(rho_m):
+        raise ValueError(f"rho_m: expected a finite number, got {rho_m}")
+    validate.within(rho_m, "rho_m", zero=True)
+    validate.instance(background, Fluid, "background")
+    values = background.at(design_frequency)
+    k0 = float(background.wavenumber(design_frequency).real)
+    if not (math.isfinite(k0) and k0 > 0):
+        raise ValueError(f"background: expected a fluid in which waves propagate, got {background!r}")
+    cosine = np.cos(2 * np.pi * np.arange(n_layers) / n_layers)
+    cosine[np.abs(cosine) < 1e-15] = 0.0  # cos(pi/2): exactly zero, as in the formula
+    density = complex(values.rho_z) * (rho_m + (1 / eta + 1j * delta_rho) * cosine)
+    thickness = eta * 2 * np.pi / k0 / n_layers
+    return Cell(tuple(Layer(Fluid(rho, complex(values.bulk_modulus)), thickness) for rho in density))

@@ -1,0 +1,199 @@
+"""Sampled pressure profiles, from arrays, text files or a line of a dataset."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .. import memory, validate
+from .base import Tilted, checked_launch, sin_degrees, spectral_sum
+from .columns import read_columns
+
+
+@dataclass(frozen=True, eq=False)
+class Profile(Tilted):
+    """Any sampled pressure profile on the launch plane, zero outside its samples.
+
+    Parameters
+    ----------
+    x : 1-D array, m
+        Strictly increasing. Uneven samples are brought onto an even grid of the finest spacing by a cubic spline.
+    p : 1-D array of complex, Pa
+    z0 : float, m
+        Launch plane, z0 <= 0.
+    angle : float, degree
+        Tilts the profile further by ``exp(i k0 sin(angle) (x - centre))``.
+
+    Notes
+    -----
+    Between the samples the profile is its band-limited (Whittaker) interpolation: the spectrum is
+    ``dx sum_j p_j exp(-i kx x_j)`` for ``|kx - k0 sin(angle)| <= pi/dx`` and 0 beyond.
+
+    Examples
+    --------
+    >>> x = np.linspace(-0.3, 0.3, 601)
+    >>> ring = bp.Profile(x, (1 - (x / 0.05) ** 2) * np.exp(-((x / 0.05) ** 2)), z0=-0.05)
+    >>> round(ring.spacing, 6)
+    0.001
+    """
+
+    x: np.ndarray
+    p: np.ndarray
+    z0: float = 0.0
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in zip(("angle", "z0"), checked_launch(self.angle, self.z0), strict=True):
+            object.__setattr__(self, name, value)
+        x, p = validate.positions(self.x, "x", increasing=True), validate.numeric(self.p, "p").astype(complex)
+        if x.size < 2:
+            raise ValueError(f"x: expected a 1-D array of at least 2 positions, got shape {x.shape}")
+        if p.shape != x.shape:
+            raise ValueError(f"p: expected an array of x's shape {x.shape}, got {p.shape}")
+        validate.within(p, "p", zero=True)
+        if not np.all(np.isfinite(p)):
+            raise ValueError("p: expected finite values, got NaN or infinity")
+        if not np.any(p):
+            raise ValueError("p: expected a profile that is not zero everywhere")
+        steps = np.diff(x)
+        if np.ptp(steps) > 1e-6 * steps.min():
+            from scipy.interpolate import CubicSpline
+
+            count = float((x[-1] - x[0]) / steps.min()) + 1
+            memory.check("x", 200.0 * count, f"{count:.3g} even steps as small as the least", "space x more evenly")
+            even = np.linspace(x[0], x[-1], round(count))
+            x, p = even, CubicSpline(x, p)(even)
+        for key, array in (("x", x), ("p", p)):
+            array.setflags(write=False)
+            object.__setattr__(self, key, array)
+
+    @classmethod
+    def from_file(
+        cls, path: str | os.PathLike[str], z0: float = 0.0, angle: float = 0.0, conjugate: bool = False
+    ) -> Profile:
+        """A measured profile from a text file of two or three columns: x [m], Re p, Im p [Pa].
+
+        Columns are parted by blanks, commas or semicolons; lines that begin with # or % are comments. Commas are decimal
+        where semicolons or tabs part the columns and no number has a point; what could be read either way is refused.
+
+        Parameters
+        ----------
+        path : path
+        z0, angle
+            As in `Profile`.
+        conjugate : bool
+            For files in the convention exp(+i w t).
+
+        Raises
+        ------
+        ValueError
+            Names the file, and the line that is no row of finite numbers or may be read in two ways.
+        OSError
+            The file cannot be opened.
+        """
+        path = validate.as_path(path)
+        validate.flag(conjugate, "conjugate")
+        table = read_columns(path, 2, 3, "x, Re p, Im p")
+        p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
+        order = np.argsort(table[:, 0], kind="stable")
+        return cls(table[order, 0], (p.conj() if conjugate else p)[order], z0, angle)
+
+    @classmethod
+    def from_data(cls, profile: Any, z0: float = 0.0, angle: float = 0.0) -> Profile:
+        """One line of a dataset: a DataArray of complex pressure along x (``ds.p.sel(z=0, method="nearest")``, say)."""
+        if getattr(profile, "dims", None) != ("x",):
+            raise ValueError(
+                f"profile: expected a DataArray along x, got {getattr(profile, 'dims', type(profile).__name__)}"
+            )
+        return cls(profile["x"].values, profile.values, z0, angle)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Profile) and self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> tuple[bytes, bytes, float, float]:
+        return (self.x + 0.0).tobytes(), (self.p + 0.0).tobytes(), self.z0, self.angle  # -0.0 is 0.0
+
+    @property
+    def spacing(self) -> float:
+        """Distance between samples [m]."""
+        return float((self.x[-1] - self.x[0]) / (self.x.size - 1))
+
+    @property
+    def centre(self) -> float:
+        """Middle of the sampled interval [m]."""
+        return float((self.x[0] + self.x[-1]) / 2)
+
+    def moved_to_origin(self) -> Profile:
+        """The same samples about x = 0."""
+        return replace(self, x=self.x - self.centre)
+
+    def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
+        S = self.spacing * spectral_sum(k, self.x, self.p)
+        return np.where(np.abs(np.asarray(k).real) <= np.pi / self.spacing, S, 0)
+
+    def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
+        """S(kx) [Pa m], zero beyond the samples' Nyquist wavenumber."""
+        return super().spectrum(kx, k0) * np.exp(-1j * k0 * float(sin_degrees(self.angle)) * self.centre)
+
+    def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
+        """S(kx) at angles of given sines (B,): (B, n) for kx (n,). Angles tilt the samples, so all share exp(-i kx x)."""
+        kx, tilt = np.asarray(kx), k0 * sines
+        tilted = self.p[:, None] * np.exp(1j * np.multiply.outer(self.x - self.centre, tilt))
+        S = self.spacing * spectral_sum(kx, self.x, tilted).T
+        return np.where(np.abs(kx.real - tilt[:, None]) <= np.pi / self.spacing, S, 0)
+
+    def spectral_rounding(self, kx: np.ndarray, k0: float) -> tuple[np.ndarray, np.ndarray]:
+        """What rounding of positions and phases leaves unknown of S(kx): root mean square [Pa m], and as white noise [Pa m^(1/2)].
+
+        Every p_j exp(-i k x_j) errs by itself, by up to EPS (1 + |k x_j|) |p_j|, k = kx - k0 sin(angle). It counts where a slab
+        lets through only such kx at which the samples cancel to next to nothing.
+        """
+        k = np.abs(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
+        size, far = np.abs(self.p), np.abs(self.x)
+        moments = [float(np.sqrt(np.sum((size * far**m) ** 2))) for m in (0, 1)]
+        largest = [float(np.max(size * far**m)) for m in (0, 1)]
+        eps, dx = np.finfo(float).eps, self.spacing
+        return eps * dx * (moments[0] + k * moments[1]), eps * math.sqrt(dx) * (largest[0] + k * largest[1])
+
+    def shifts_smoothly(self, tolerance: float) -> bool:
+        """Whether the samples' spectrum has vanished where it ends, at the Nyquist wavenumber."""
+        lo, hi = self.band(0.0, tolerance)
+        return (hi - lo) / 2 < (1 - 1e-9) * np.pi / self.spacing
+
+    def spectrum_ends(self, k0: float) -> tuple[float, float]:
+        """The interval of kx at whose ends the spectrum is cut off, whatever its value there [rad/m]."""
+        middle, half = k0 * float(sin_degrees(self.angle)), np.pi / self.spacing
+        return middle - half, middle + half
+
+    def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
+        """p(x, z0): the band-limited interpolation of the samples [Pa]."""
+        x = np.asarray(x, dtype=float)
+        p, flat = np.empty(x.size, complex), x.ravel()
+        block = max(1, 2_000_000 // self.x.size)
+        for start in range(0, x.size, block):
+            part = slice(start, start + block)
+            p[part] = np.sinc((flat[part, None] - self.x) / self.spacing) @ self.p
+        return p.reshape(x.shape) * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
+
+    def reach(self, tolerance: float) -> float:
+        """Half the sampled interval [m]."""
+        return float(self.x[-1] - self.x[0]) / 2 + self.spacing
+
+    def band(self, k0: float, tolerance: float) -> tuple[float, float]:
+        """The interval in which the samples' spectrum exceeds tolerance times its largest value [rad/m]."""
+        size = 4 * self.x.size
+        k = 2 * np.pi * np.fft.fftfreq(size, self.spacing)
+        strong = np.abs(np.fft.fft(self.p, size))
+        used = np.abs(k[strong > tolerance * strong.max()])
+        middle, half = (
+            k0 * float(sin_degrees(self.angle)),
+            min(used.max() + 2 * np.pi / (size * self.spacing), np.pi / self.spacing),
+        )
+        return middle - half, middle + half
