@@ -18,19 +18,22 @@ from typing import Any
 import numpy as np
 
 from .. import validate
+from ..conventions import real_or_complex
 from .fluids import Fluid, FluidValues
 from .structures import Cell, Layer, Membrane, Slab
 
 
 @dataclass(frozen=True)
 class Tabulated:
-    """A property known at some frequencies [Hz]; linear between them, refused outside."""
+    """A property tabulated at real frequencies [Hz]: linear between them, refused outside."""
 
     frequency: tuple[float, ...]
     values: tuple[complex, ...]
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        f, known = np.asarray(frequency, dtype=float), np.asarray(self.frequency)
+        f, known = real_or_complex(frequency), np.asarray(self.frequency)
+        if np.iscomplexobj(f):
+            raise validate.refuse("frequency", "real frequencies of a tabulated medium", f)
         if np.any((f < known[0]) | (f > known[-1])):
             raise ValueError(f"frequency: this medium is known from {known[0]} to {known[-1]} Hz only, got {f}")
         values = np.asarray(self.values)
@@ -63,7 +66,7 @@ class CellMean:
     inverse: bool = False
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        mean = _mean(self.cell, np.asarray(frequency, dtype=float), self.name, self.inverse)
+        mean = _mean(self.cell, real_or_complex(frequency), self.name, self.inverse)
         return 1 / mean if self.inverse else mean
 
 
@@ -88,7 +91,7 @@ class LmmdDensity:
     cell: Cell
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        f = np.asarray(frequency, dtype=float)
+        f = real_or_complex(frequency)
         return _mean(self.cell, f, "rho_z") + (2 * np.pi * f) ** 2 * _modulation(self.cell, f)[0]
 
 
@@ -100,7 +103,7 @@ class LmmdJump:
     sign: int
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        return self.sign * _modulation(self.cell, np.asarray(frequency, dtype=float))[1]
+        return self.sign * _modulation(self.cell, real_or_complex(frequency))[1]
 
 
 #: The functions of frequency made here: a file records them by their cell, not as a table.

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import validate
-from ..conventions import branch_wavenumber
+from ..conventions import branch_wavenumber, real_or_complex
 from ..validate import as_complex
 
 Property = complex | Callable[[np.ndarray], np.ndarray]
@@ -36,7 +36,7 @@ def check_property(
 
 
 def property_values(prop: Property, frequency: np.ndarray, name: str) -> np.ndarray:
-    """A property at frequencies [Hz], complex, of their shape. A function may overwrite what it is given: it gets a copy."""
+    """A property at real or complex frequencies [Hz], as complex numbers of their shape; a function gets a copy, to overwrite."""
     if not callable(prop):
         return np.full(frequency.shape, prop, dtype=complex)
     out = validate.numeric(prop(frequency.copy()), name, "a function that returns numbers").astype(complex)
@@ -101,15 +101,15 @@ class Fluid:
             for n in ("density", "bulk_modulus", "density_x")
             if (v := getattr(self, n)) is not None and not callable(v)
         }
-        self._check(**numbers)
+        self._check(self.active, **numbers)
 
-    def _check(self, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:
+    def _check(self, active: bool, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:
         if density is not None:
-            check_property(density, "density", gain_sign=1, active=self.active)
+            check_property(density, "density", gain_sign=1, active=active)
         if bulk_modulus is not None:
-            check_property(bulk_modulus, "bulk_modulus", gain_sign=-1, active=self.active, zero=False)
+            check_property(bulk_modulus, "bulk_modulus", gain_sign=-1, active=active, zero=False)
         if density_x is not None:
-            check_property(density_x, "density_x", gain_sign=1, active=self.active, infinite=True)
+            check_property(density_x, "density_x", gain_sign=1, active=active, infinite=True)
             if np.any(np.asarray(density_x) == 0):
                 raise ValueError("density_x: zero beside a density that is given apart has no finite limit, got 0")
 
@@ -131,18 +131,23 @@ class Fluid:
         return any(callable(v) for v in (self.density, self.bulk_modulus, self.density_x))
 
     def at(self, frequency: Any) -> FluidValues:
-        """The properties at frequencies [Hz], as complex arrays of frequency's shape."""
-        frequency = np.asarray(frequency, dtype=float)
+        """The properties at frequencies [Hz], as complex arrays of frequency's shape.
+
+        Complex frequencies reach functions of frequency as they are. A passive medium may show Im(density) < 0 at them, so
+        that gain is refused at real ones only.
+        """
+        frequency = real_or_complex(frequency)
         rho_z = property_values(self.density, frequency, "density")
         K = property_values(self.bulk_modulus, frequency, "bulk_modulus")
         rho_x = rho_z if self.density_x is None else property_values(self.density_x, frequency, "density_x")
         if self.dispersive:
-            self._check(rho_z, K, None if self.density_x is None else rho_x)
+            active = self.active or np.iscomplexobj(frequency)
+            self._check(active, rho_z, K, None if self.density_x is None else rho_x)
         return FluidValues(rho_z, rho_x, K)
 
     def wavenumber(self, frequency: Any) -> np.ndarray:
-        """The lateral wavenumber at which waves turn evanescent, w sqrt(rho_x / K) [rad/m]."""
-        frequency = np.asarray(frequency, dtype=float)
+        """The lateral wavenumber at which waves turn evanescent, w sqrt(rho_x / K) [rad/m]; frequency [Hz] real or complex."""
+        frequency = real_or_complex(frequency)
         v = self.at(frequency)
         return branch_wavenumber(2 * np.pi * frequency, v.rho_x, v.bulk_modulus)
 

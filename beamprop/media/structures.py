@@ -60,11 +60,12 @@ class Membrane:
             check_property(value, "areal_density", gain_sign=1, active=self.active)
 
     def at(self, frequency: np.ndarray) -> np.ndarray:
-        """Areal density at frequencies [Hz], checked."""
-        out = property_values(self.areal_density, frequency, "areal_density")
+        """Areal density at frequencies [Hz], checked; gain is refused at real ones only, as in `Fluid.at`."""
+        values = property_values(self.areal_density, frequency, "areal_density")
         if callable(self.areal_density):
-            check_property(out, "areal_density", gain_sign=1, active=self.active)
-        return out
+            active = self.active or np.iscomplexobj(frequency)
+            check_property(values, "areal_density", gain_sign=1, active=active)
+        return values
 
 
 def _checked_layer(layer: Any) -> Layer | Membrane:

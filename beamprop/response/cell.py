@@ -203,7 +203,7 @@ def _fitted(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix |
 def _circle_is_calm(layers: LayerValues, omega2: np.ndarray, radius: np.ndarray) -> np.ndarray:
     """Whether E on the circle is of order 1, and its rounding not much larger than it is at kx = 0: (F, 1)."""
     mass, compliance, mobility = (np.abs(v).sum(0)[:, None] for v in (layers.mass, layers.compliance, layers.mobility))
-    still, moved = omega2 * compliance, radius * mobility
+    still, moved = np.abs(omega2) * compliance, radius * mobility
     return (mass * (still + moved) < 4) & (moved < 4 * still) & ~np.any(layers.vanishing, axis=0)[:, None]
 
 

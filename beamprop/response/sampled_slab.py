@@ -140,7 +140,7 @@ class FluidSlab(NamedTuple):
     after: FluidValues
     omega: np.ndarray  # (F, 1)
     thickness: float
-    k0: Any  # float for one frequency, (F,) for several
+    k0: Any  # float for one frequency, (F,) for several; complex where the frequency is
     branch_points: tuple[Any, ...]
 
     @property
@@ -326,18 +326,21 @@ class FluidSlab(NamedTuple):
         before, after = (FluidValues(*(v[rows] for v in f)) for f in (self.before, self.after))
         k0, branches = self.k0[rows], [b[rows] for b in self.branch_points]
         if np.ndim(i) == 0:
-            k0, branches = float(k0[0]), [complex(b[0]) for b in branches]
+            k0, branches = k0[0].item(), [complex(b[0]) for b in branches]
         return FluidSlab(segments, before, after, self.omega[rows], self.thickness, k0, tuple(branches))
 
 
-def sample(slab: Slab, frequency: float, backward: bool = False) -> FluidSlab:
+def sample(slab: Slab, frequency: complex, backward: bool = False) -> FluidSlab:
     """A slab at one frequency; refuses half-spaces in which a question has no answer: see `sample_all`."""
     s = sample_all(slab, np.array([frequency]), backward)
-    return s._replace(k0=float(s.k0[0]), branch_points=tuple(complex(b[0]) for b in s.branch_points))
+    return s._replace(k0=s.k0[0].item(), branch_points=tuple(complex(b[0]) for b in s.branch_points))
 
 
 def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> FluidSlab:
-    """A slab at frequencies (F,); `backward` says whether the half-space behind may carry backward waves."""
+    """A slab at frequencies (F,); `backward` says whether the half-space behind may carry backward waves.
+
+    At complex frequencies the answers are the analytic continuation of those at real ones, and `k0` is the complex wavenumber.
+    """
     branches = []
     for name, fluid in (("before", slab.before), ("after", slab.after)):
         k = fluid.wavenumber(frequency)
@@ -350,13 +353,14 @@ def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> Flu
             )
         if np.all(np.isfinite(k)):
             branches.append(k)
+    k0 = slab.before.wavenumber(frequency)
     return FluidSlab(
         slab_values(slab, frequency),
         slab.before.at(frequency),
         slab.after.at(frequency),
         2 * np.pi * frequency[:, None],
         slab.thickness,
-        slab.before.wavenumber(frequency).real,
+        k0 if np.iscomplexobj(frequency) else k0.real,
         tuple(branches),
     )
 

@@ -132,7 +132,7 @@ def _grazing(
     slab, or one matched at grazing, with equal half-spaces) the matrix is [[P, .], [0, 1/P]] and
     ``t = 2/(P + 1/P)``, ``r = (P - 1/P)/(P + 1/P)``. q counts as zero when it is no more than rounding.
     """
-    rounding = sum(s.periods * np.abs(s.layers.compliance).sum(axis=0) for s in segments)[:, None] * omega**2
+    rounding = sum(s.periods * np.abs(s.layers.compliance).sum(axis=0) for s in segments)[:, None] * np.abs(omega) ** 2
     equal = np.all([np.equal(a, b) for a, b in zip(front, behind, strict=True)], axis=0)
     zero = grazing & equal & (np.abs(near.q) <= 1e-12 * rounding * np.abs(near.p))
     with np.errstate(over="ignore"):
