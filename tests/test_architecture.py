@@ -34,6 +34,7 @@ ORDER = [
     "api",
     "comparison",
     "plot",
+    "parameters",
     "cli",
     "__main__",
 ]
@@ -56,6 +57,7 @@ ONLY = {
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
     "comparison": {"conventions", "validate", "profiles", "io"},
     "plot": {"conventions", "validate"},
+    "parameters": {"memory", "validate", "media", "sources"},
 }
 
 
@@ -127,7 +129,7 @@ def test_the_documentation_lists_the_rooms_in_order():
 def test_the_checker_sees_imports():
     """It finds relative and function-level imports in files and folders (or the tests here would hold by themselves)."""
     assert {"io", "fields", "response", "sources", "media"} <= set().union(*map(own_imports, files_of("api")))
-    assert {"media", "io", "api", "plot"} <= set().union(*map(own_imports, files_of("cli")))
+    assert {"parameters", "io", "api", "plot"} <= set().union(*map(own_imports, files_of("cli")))
     assert "pyfftw" in set().union(*map(other_imports, files_of("arrays")))
     assert len(FILES) >= 18
 

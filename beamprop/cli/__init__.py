@@ -1,7 +1,7 @@
 """The command `beamprop`. Data go to stdout, progress and warnings to stderr; wrong use exits with 2.
 
-Everything heavy is imported inside the commands, so that ``beamprop --help`` is instant. options.py: what may be typed and
-the objects it describes. questions.py: the questions. files.py: comparison and conversion. answer.py: stdout and files.
+Everything heavy is imported inside the commands, so that ``beamprop --help`` is instant. options.py: what may be typed.
+questions.py: the questions. files.py: comparison and conversion. answer.py: stdout and files.
 """
 
 from __future__ import annotations

@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from .. import parameters
+from ..parameters import spaced
 from .answer import answer, table
-from .options import BEAM, CELL, OUTPUT, OUTPUT_WITHOUT_PLOT, SLAB, Axis, beam_of, cell_of, option, slab_of, spaced
+from .options import BEAM, CELL, OUTPUT, OUTPUT_WITHOUT_PLOT, SLAB, Axis, given, option
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 @SLAB
 @BEAM
 @option("--frequency", default="2000:3000:101", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=0.0, text="Launch plane, at or in front of the near face at 0 [m].")
+@option("--z0", default=0.0, text=parameters.BEAM["z0"].text)
 @click.option("--air-distance", type=float, help="Of the comparison without the slab [m]; two wavelengths by default.")
 @OUTPUT
 def beam_width(**o: Any) -> None:
@@ -27,8 +29,8 @@ def beam_width(**o: Any) -> None:
         from ..api.beam_width import beam_width as question
 
         return question(
-            slab_of(o),
-            beam_of(o, o["z0"]),
+            parameters.slab(given(o, parameters.SLAB)),
+            parameters.beam(given(o, parameters.BEAM)),
             o["frequency"],
             o["angle"],
             o["rtol"],
@@ -55,7 +57,7 @@ def _needs_axis(o: dict[str, Any], *names: str) -> None:
 @SLAB
 @BEAM
 @option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=0.0, text="Launch plane, at or in front of the near face at 0 [m].")
+@option("--z0", default=0.0, text=parameters.BEAM["z0"].text)
 @click.option("--window", type=float, help="Half-width of the window [m]; as wide as the beam by default.")
 @OUTPUT_WITHOUT_PLOT
 def beam_measures(**o: Any) -> None:
@@ -64,9 +66,15 @@ def beam_measures(**o: Any) -> None:
     def ask() -> xr.Dataset:
         from ..api.beam_measures import beam_measures as question
 
-        beam = beam_of(o, o["z0"])
+        beam = parameters.beam(given(o, parameters.BEAM))
         return question(
-            slab_of(o), beam, o["frequency"], o["angle"], o["rtol"], window=o["window"], progress=not o["quiet"]
+            parameters.slab(given(o, parameters.SLAB)),
+            beam,
+            o["frequency"],
+            o["angle"],
+            o["rtol"],
+            window=o["window"],
+            progress=not o["quiet"],
         )
 
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
@@ -77,7 +85,7 @@ def beam_measures(**o: Any) -> None:
 @SLAB
 @BEAM
 @option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=-0.1, text="Launch plane, at or in front of the near face at 0 [m].")
+@option("--z0", default=-0.1, text=parameters.BEAM["z0"].text)
 @option("--x", default="-0.7:0.7:561", kind=Axis(), text="Lateral positions [m], an axis.")
 @click.option(
     "--z", type=Axis(), help="Depths [m], an axis; from the launch plane to a little behind the slab by default."
@@ -97,11 +105,11 @@ def field(**o: Any) -> None:
     def ask() -> xr.Dataset:
         from ..api.field import field
 
-        slab = slab_of(o)
+        slab = parameters.slab(given(o, parameters.SLAB))
         z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
         question = (
             slab,
-            beam_of(o, o["z0"]),
+            parameters.beam(given(o, parameters.BEAM)),
             o["frequency"],
             o["x"],
             z,
@@ -162,7 +170,7 @@ def scattering(**o: Any) -> None:
     def ask() -> xr.Dataset:
         from ..api.scattering import scattering as question
 
-        return question(slab_of(o), o["frequency"], **axes)
+        return question(parameters.slab(given(o, parameters.SLAB)), o["frequency"], **axes)
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -186,7 +194,7 @@ def bloch(**o: Any) -> None:
     def ask() -> xr.Dataset:
         from ..api.bloch import bloch
 
-        cell, background = cell_of(o)
+        cell, background = parameters.cell(given(o, parameters.CELL))
         return bloch(cell, o["frequency"], kx_over_k0=o["kx_over_k0"], background=background)
 
     def draw(ds: xr.Dataset) -> Any:
@@ -214,7 +222,9 @@ def guided_modes(**o: Any) -> None:
     def ask() -> xr.Dataset:
         from ..api.guided_modes import guided_modes as question
 
-        return question(slab_of(o), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"])
+        return question(
+            parameters.slab(given(o, parameters.SLAB)), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"]
+        )
 
     def summary(ds: xr.Dataset) -> str:
         if ds.sizes["mode"] == 0:

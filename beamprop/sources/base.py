@@ -21,13 +21,6 @@ class Beam(Protocol):
     kx is an array [rad/m] of any shape, real or complex; k0 is the wavenumber of the medium in front [rad/m]. A tolerance
     is relative, between 0 and 1. The spectrum is ``S(kx) = integral p(x, z0) exp(-i kx x) dx``.
 
-    Attributes
-    ----------
-    angle : float, degree
-        Direction from the normal.
-    z0 : float, m
-        Launch plane, z0 <= 0.
-
     Notes
     -----
     Members that a source may have beside these; `Tilted` gives the first two to a source that is written with it:
@@ -41,8 +34,13 @@ class Beam(Protocol):
     * ``width_of``: "pressure" or "intensity", the definition of its width; "pressure" without it.
     """
 
-    angle: float
-    z0: float
+    @property
+    def angle(self) -> float:
+        """Direction from the normal [degree]."""
+
+    @property
+    def z0(self) -> float:
+        """Launch plane [m], z0 <= 0."""
 
     @property
     def centre(self) -> float:
