@@ -1,8 +1,8 @@
-"""Plain values to objects: strings, numbers and a table of them become a slab, a beam and axes.
+"""From plain values to objects: a table of strings and numbers becomes a slab, a beam or axes.
 
-What describes a question outside of Python, options of the command or a table in a file, has one list of names, defaults and
-texts here, and one form of error: ``ValueError("periods: expected ..., got ...")`` names the key. Everything heavy is imported
-inside the functions, so that the command can show its help at once.
+Options of the command and tables in files share the names, defaults and texts that stand here, and the form of error that names
+the key: ``ValueError("periods: expected ..., got ...")``. NumPy and the rooms are imported inside the functions, so that the command
+shows its help at once.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Axis = float | list[float]
 
 
 class Parameter(NamedTuple):
-    """One key of a table: what it stands for if it is left out, what turns a plain value into it, and what it means."""
+    """A key of a table: its default, the function that turns a plain value into it, and its meaning."""
 
     default: Any
     parse: Callable[[Any, str], Any]

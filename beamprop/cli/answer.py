@@ -81,7 +81,7 @@ def plain(value: Any) -> Any:
 
 
 def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0, most: int = 12) -> str:
-    """A few rows of a dataset as text."""
+    """At most `most` rows of a dataset as text, evenly spaced."""
     dims = list(ds[names[0]].dims)
     frame = ds[list(names)].to_dataframe().reset_index() if dims else None
     if frame is None:

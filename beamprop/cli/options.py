@@ -42,7 +42,7 @@ def _parsed(kind: click.ParamType, parse: Callable[[Any, str], Any], value: Any,
 
 
 class Target(click.ParamType):
-    """A file to write, with one of some endings, in a folder that exists and can be written to."""
+    """A file to write, with one of the given endings, in a folder that exists and can be written to."""
 
     name = "file"
 
@@ -65,7 +65,7 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
 def all_of(*options: Decorator) -> Decorator:
-    """Several options as one decorator."""
+    """Options as one decorator."""
 
     def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
         for decorator in reversed(options):
@@ -81,7 +81,7 @@ def option(*names: str, default: Any, kind: Any = None, text: str, show: bool | 
 
 
 def option_of(table: Mapping[str, Parameter], name: str) -> Decorator:
-    """The option of one parameter."""
+    """The option of a parameter."""
     parameter = table[name]
     typed = "--" + name.replace("_", "-")
     if parameter.parse is parameters.switch:
@@ -107,7 +107,7 @@ BEAM = all_of(
         "--angle", default="0", kind=Axis(), text="From the normal [degree]; an axis: a, a,b,c or start:stop:count."
     ),
     *(option_of(parameters.BEAM, name) for name in ("x0", "width_of", "form")),
-    option("--rtol", default=1e-8, text="Asked relative error."),
+    option("--rtol", default=1e-8, text="Requested relative error."),
 )
 OUTPUT_WITHOUT_PLOT = all_of(
     click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the dataset to this .nc or .zarr."),

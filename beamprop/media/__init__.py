@@ -1,1 +1,1 @@
-"""Fluids, layers, cells and slabs; effective media; a slab at given frequencies as arrays."""
+"""Fluids, layers, cells and slabs; the paper's cell; effective media; all of them as arrays at given frequencies."""

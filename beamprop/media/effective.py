@@ -1,4 +1,4 @@
-"""Effective media: a cell to a fluid, a slab to a slab, so that the one exact solver runs them all.
+"""Effective media: a cell to a fluid, a slab to a slab, so that the exact solver serves them, too.
 
 * Standard theory: ``rho_x = <1/rho>^-1, rho_z = <rho>, 1/K = <1/K>``.
 * Large modulation depth, the paper's Eq. (9): no motion along x (``1/rho_x = 0``) and
@@ -97,7 +97,7 @@ class LmmdDensity:
 
 @dataclass(frozen=True)
 class LmmdJump:
-    """The interface term of one face as an areal density, sign times G at the face, as a function of frequency."""
+    """The interface term of a face as an areal density, sign times G at the face, as a function of frequency."""
 
     cell: Cell
     sign: int
@@ -151,7 +151,7 @@ def lmmd_emt(cell: Cell) -> Fluid:
         LmmdDensity(cell),
         _simplify(cell, CellMean(cell, "bulk_modulus", inverse=True)),
         np.inf,
-        active=True,  # <G^2> of a passive cell can be a hair active; the cell itself was checked
+        active=True,  # rounding of <G^2> may give a passive cell a gain of 1e-16; the cell itself was checked
     )
 
 

@@ -147,7 +147,7 @@ class Slab:
             if not callable(fluid.density) and fluid.density == 0:
                 raise ValueError(f"{name}: a half-space cannot have density 0")
         merged: list[tuple[Cell, int]] = []
-        for cell, periods in segments:  # so that a + a is a with twice the periods
+        for cell, periods in segments:  # a + a becomes a with twice the periods
             if merged and merged[-1][0] == cell:
                 merged[-1] = (cell, merged[-1][1] + periods)
             else:
@@ -177,7 +177,7 @@ class Slab:
 
     @property
     def cell(self) -> Cell:
-        """The one cell of a slab that is not stacked."""
+        """The cell of a slab that is not stacked."""
         if len(self.segments) > 1:
             raise ValueError(f"cell: a stacked slab has {len(self.segments)} cells; use .segments")
         return self.segments[0][0]
@@ -194,10 +194,10 @@ class Slab:
         """Distance from the near to the far face [m]."""
         return math.fsum(cell.thickness * periods for cell, periods in self.segments)
 
-    def __add__(self, other: Slab) -> Slab:
-        if not isinstance(other, Slab):
+    def __add__(self, behind: Slab) -> Slab:
+        if not isinstance(behind, Slab):
             return NotImplemented
-        return Slab.stack(self.segments + other.segments, self.before, other.after)
+        return Slab.stack(self.segments + behind.segments, self.before, behind.after)
 
     def __repr__(self) -> str:
         stack = " + ".join(f"{periods} x {cell!r}" for cell, periods in self.segments)

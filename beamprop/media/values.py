@@ -34,13 +34,13 @@ class SegmentValues(NamedTuple):
     periods: int
 
 
-#: Stands for an isotropic density of exactly 0: what is left of its limit (r = -1, t = 0 off the normal) is of
-#: this size against densities near 1.
+#: Replaces an isotropic density of exactly 0, whose limit is r = -1, t = 0 off the normal: the error is of this size beside
+#: densities near 1.
 TINY_DENSITY = 1e-40
 
 
 class Materials(NamedTuple):
-    """The layers of a cell as their materials at F frequencies: what differences between neighbours are formed from.
+    """The materials of a cell's layers at F frequencies, from which differences between neighbours are formed.
 
     `fluid` arrays (N, F); a membrane has its areal density [kg/m2] for rho_z.
     """
@@ -55,7 +55,7 @@ def materials(cell: Cell, frequency: np.ndarray) -> Materials:
     seen: dict[Fluid, FluidValues] = {}
     rows = []
     for layer in cell.layers:
-        if isinstance(layer, Membrane):  # mass on no thickness, which nothing moves along x
+        if isinstance(layer, Membrane):  # mass without thickness, which does not move along x
             rows.append(
                 FluidValues(layer.at(frequency), np.full(frequency.shape, np.inf + 0j), np.ones(frequency.shape))
             )
@@ -69,7 +69,7 @@ def materials(cell: Cell, frequency: np.ndarray) -> Materials:
 
 
 def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
-    """The bridge: a cell's layers as arrays at frequencies [Hz] (1-D)."""
+    """A cell's layers as mass, compliance and mobility at frequencies [Hz] (1-D)."""
     (rho_z, rho_x, K), thickness, membrane = materials(cell, frequency)
     vanishing = (rho_z == 0) & (rho_x == 0)
     if vanishing.any():
@@ -81,5 +81,5 @@ def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
 
 
 def slab_values(slab: Slab, frequency: np.ndarray) -> list[SegmentValues]:
-    """The bridge: a slab's segments as arrays at frequencies [Hz] (1-D)."""
+    """A slab's segments, from the near face on, at frequencies [Hz] (1-D)."""
     return [SegmentValues(layer_values(cell, frequency), periods) for cell, periods in slab.segments]

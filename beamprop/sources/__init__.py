@@ -1,1 +1,1 @@
-"""What is launched: Gaussian beams, sampled profiles, slits; one source at many angles."""
+"""What is launched: Gaussian beams, sampled profiles, slits; a source at many angles."""

@@ -1,11 +1,11 @@
-"""One source sent off at many angles.
+"""A source at many angles, interpolated from the same source at fewer.
 
-Away from its own plane, too, the field of a tilted source depends on the sine s of its angle as a sum of exp(i k0 s xi) over
-the launch profile, |xi| <= reach: a function of s that a polynomial through a few Chebyshev nodes follows. So the fields at
-any number of angles are made, by a real matrix, of those at the nodes. The polynomial of r nodes errs by no more than
-2 (c/2)^r / r!, c = k0 reach (s_max - s_min)/2, of what the source sends (the next Bessel function of the Jacobi-Anger series).
-The error goes with s as the Chebyshev polynomial T_r, for what is left out, T_(r+j), looks like -T_(r-j) at the nodes, and
-T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`contour.error_estimate`).
+At any depth, the field of a tilted source depends on the sine s of its angle as an integral of exp(i k0 s xi) over the launch
+profile, |xi| <= reach. A polynomial in s through r Chebyshev nodes approximates it, so that a real matrix makes the fields at any
+number of angles of those at r angles. Its error is at most 2 (c/2)^r / r! of the source's amplitude, c = k0 reach (s_max - s_min)/2:
+the first Bessel function that the Jacobi-Anger series leaves out. As a function of s the error follows the Chebyshev polynomial
+T_r, because a term T_(r+j) that is left out is aliased to -T_(r-j) at the nodes and T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at
+the nodes and is largest at both extremes, where `contour.error_estimate` measures it.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from .base import Beam, sin_degrees
 
 
 class AngleInterpolation(NamedTuple):
-    """Beams that are summed, and the matrix (A, B) that makes the requested ones of them; None where they are the requested ones."""
+    """Beams whose fields are computed, and the weights (A, B) that make the requested fields of them; None if they are the same."""
 
-    beam: Beam  #: any of them: what they share
-    angles: np.ndarray  #: (B,) degree
+    beam: Beam  #: the source, at any angle
+    angles: np.ndarray  #: (B,) degree, of the computed fields
     weights: np.ndarray | None = None
-    requested_angles: np.ndarray | None = None  #: (A,) degree, those that `weights` makes
+    requested_angles: np.ndarray | None = None  #: (A,) degree, of the fields that `weights` makes
 
     @property
     def requested(self) -> np.ndarray:
@@ -32,29 +32,29 @@ class AngleInterpolation(NamedTuple):
         return self.angles if self.requested_angles is None else self.requested_angles
 
     def spectra(self, kx: np.ndarray, k0: float) -> np.ndarray:
-        """S(kx) of each: (B, n)."""
-        many = getattr(self.beam, "spectra", None)
-        if many is not None and self.beam.entire and self.angles.size > 1:
-            return many(kx, k0, sin_degrees(self.angles))
+        """S(kx) of each computed beam: (B, n)."""
+        spectra = getattr(self.beam, "spectra", None)
+        if spectra is not None and self.beam.entire and self.angles.size > 1:
+            return spectra(kx, k0, sin_degrees(self.angles))
         return np.stack([self.at(a).spectrum(kx, k0) for a in self.angles])
 
     def at(self, angle: float) -> Beam:
-        """The beam at one angle."""
+        """The beam at an angle [degree]."""
         return self.beam if angle == self.beam.angle else self.beam.at_angle(float(angle))
 
     def spread(self, count: int) -> np.ndarray:
-        """Indices of `count` asked angles, or fewer, evenly through all of them in growing order: both extremes and some between."""
+        """Indices of at most `count` requested angles, evenly spaced in their order by size, both extremes included."""
         places = np.linspace(0, self.requested.size - 1, count).round().astype(int)
         return np.argsort(self.requested)[np.unique(places)]
 
     def taken(self, requested: slice | np.ndarray) -> AngleInterpolation:
-        """Some of the asked beams."""
+        """A part of the requested beams."""
         if self.weights is None:
             return self._replace(angles=self.angles[requested])
         return self._replace(weights=self.weights[requested], requested_angles=self.requested[requested])
 
     def band(self, k0: float, tolerance: float) -> float:
-        """Largest |kx| at which a spectrum exceeds `tolerance` of its largest value [rad/m]."""
+        """Largest |kx| at which any spectrum exceeds `tolerance` of its largest value [rad/m]."""
         ends = (self.at(float(a)).band(k0, tolerance) for a in (self.angles.min(), self.angles.max()))
         return max(max(-lo, hi) for lo, hi in ends)
 
@@ -71,7 +71,7 @@ class AngleInterpolation(NamedTuple):
         return np.unique(np.abs(ends))
 
     def interpolated_to(self, summed: np.ndarray, out: np.ndarray | None = None) -> np.ndarray:
-        """The asked fields (A, ...) of those that were summed (B, ...), complex."""
+        """The requested fields (A, ...) of the computed ones (B, ...), complex."""
         if self.weights is None:
             return summed
         flat = np.ascontiguousarray(summed).reshape(summed.shape[0], -1).view(float)
@@ -82,12 +82,12 @@ class AngleInterpolation(NamedTuple):
 
 
 def single(beam: Beam) -> AngleInterpolation:
-    """A beam by itself."""
+    """A beam at its own angle alone."""
     return AngleInterpolation(beam, np.array([float(beam.angle)]))
 
 
 def interpolate_angles(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> AngleInterpolation:
-    """A source at angles (A,) [degree]: summed at a few Chebyshev nodes in sin(angle) where those are fewer."""
+    """A source at angles (A,) [degree]: computed at Chebyshev nodes in sin(angle) where those are fewer."""
     smooth = getattr(beam, "shifts_smoothly", None)
     if angles.size > 4 and smooth is not None and smooth(tolerance):
         sines = sin_degrees(angles)
@@ -110,10 +110,13 @@ def nodes_for(c: float, tolerance: float) -> int:
     return count
 
 
-def _barycentric(at: np.ndarray, nodes: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """The matrix that takes values at Chebyshev nodes to the polynomial's values: (A, r); `size` of the weights."""
-    apart = at[:, None] - nodes
-    exact = apart == 0
-    weights = size * (-1.0) ** np.arange(nodes.size) / np.where(exact, 1.0, apart)
+def _barycentric(sines: np.ndarray, nodes: np.ndarray, magnitudes: np.ndarray) -> np.ndarray:
+    """The matrix from values at Chebyshev nodes to the polynomial's values at `sines`: (A, r), barycentric formula.
+
+    Its weights alternate in sign, with `magnitudes` sin of the nodes' Chebyshev angles (Berrut and Trefethen, 2004).
+    """
+    distance = sines[:, None] - nodes
+    exact = distance == 0
+    weights = magnitudes * (-1.0) ** np.arange(nodes.size) / np.where(exact, 1.0, distance)
     weights = np.where(exact.any(axis=1, keepdims=True), exact.astype(float), weights)
     return weights / weights.sum(axis=1, keepdims=True)

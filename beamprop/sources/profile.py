@@ -118,7 +118,8 @@ class Profile(Tilted):
         return hash(self._key())
 
     def _key(self) -> tuple[bytes, bytes, float, float]:
-        return (self.x + 0.0).tobytes(), (self.p + 0.0).tobytes(), self.z0, self.angle  # -0.0 is 0.0
+        # + 0.0 turns -0.0 into 0.0, which it is equal to
+        return (self.x + 0.0).tobytes(), (self.p + 0.0).tobytes(), self.z0, self.angle
 
     @property
     def spacing(self) -> float:
