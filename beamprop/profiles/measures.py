@@ -131,7 +131,10 @@ def _any_beam(s: SampledSlab, beam: Beam, face: Face) -> bool:
     """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
-    return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(transfer_function.launched(s, k, beam.z0))))
+    return bool(
+        np.max(strength * np.abs(face(k)))
+        > 1e-12 * np.max(strength * np.abs(transfer_function.launched(s, k, beam.z0)))
+    )
 
 
 def _windows(s: SampledSlab, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:

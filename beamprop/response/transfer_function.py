@@ -106,14 +106,15 @@ FAINT = 1e-250
 
 
 def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
-    """The least and the largest shift along x of the strong plane waves of the last axis, by stationary phase.
+    """How far plane waves are carried along x, by stationary phase: the least and the most of the strong ones along the last axis.
 
-    A plane wave lands at -d(arg H)/dkx; `low` and `high` are H a `step` below and above each kx.
+    A plane wave of amplitude h lands at -d(arg h)/dkx; `low` and `high` are h a `step` below and above each kx.
     """
     twice = low + high
     size = np.abs(twice)
     strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > FAINT)
-    shift = np.where(strong, -np.imag((high - low) / np.where(strong, step * twice, 1.0)), 0.0)
+    slope = np.imag((high - low) / np.where(strong, step * twice, 1.0))
+    shift = np.where(strong, -slope, 0.0)
     least, most = shift.min(-1, where=strong, initial=np.inf), shift.max(-1, where=strong, initial=-np.inf)
     least, most = (np.where(np.isfinite(v), v, 0.0) for v in (least, most))
     return least, most
