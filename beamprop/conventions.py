@@ -128,7 +128,7 @@ def _root_of_product(kx: np.ndarray, b: np.ndarray) -> np.ndarray:
     # only if both factors lie on the same side, |Re kx| < |Re b|. Re kz and Re b then have the same sign.
     root = np.asarray(kx - b)
     root *= kx + b
-    root = np.sqrt(root)
+    np.sqrt(root, out=root)
     turned = (np.abs(kx.real) < np.abs(b.real)) & (root.imag * b.real > 0)
     np.negative(root, out=root, where=turned)
     root *= 1j

@@ -118,7 +118,8 @@ def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matri
     """
     kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex, copy=False)
     count = len(layers.thickness)
-    if kx2.shape[1] >= 2 * CIRCLE and (fitted := _fitted(layers, omega, kx2)) is not None:
+    many = kx2.shape[1] >= 2 * CIRCLE and kx2.size * count >= POLYNOMIAL_FROM
+    if many and (fitted := _fitted(layers, omega, kx2)) is not None:
         return fitted
     block = max(1, BLOCK // count)
     if kx2.size <= block:
@@ -137,6 +138,8 @@ def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matri
     return Matrix(a, e11, e12, e21, e22, growth) if np.any(growth) else Matrix(1.0, e11, e12, e21, e22, None)
 
 
+#: Layers times kx from which on the polynomial takes less time than the product of the layers.
+POLYNOMIAL_FROM = 2**12
 #: Points on the circle from which the Taylor coefficients of a cell's matrix are taken; one more than the highest degree.
 CIRCLE = 14
 
