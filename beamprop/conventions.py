@@ -69,20 +69,6 @@ def label(name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name}
 
 
-def principal_root(w: np.ndarray) -> np.ndarray:
-    """Square root of complex w with Re >= 0, by real roots: np.sqrt with three times its speed, to two roundings."""
-    # plain: np.sqrt(w). With t = sqrt((|w| + |Re w|)/2) the parts of the root are t and |Im w|/2t, in the order of |parts of w|
-    if w.size < 500:  # the number of statements counts
-        return np.sqrt(w)
-    t = np.sqrt(0.5 * (np.abs(w) + np.abs(w.real)))
-    smaller = w.imag / np.maximum(2 * t, 1e-300)
-    left = w.real < 0
-    out = np.empty(w.shape, complex)
-    out.real = np.where(left, np.abs(smaller), t)
-    out.imag = np.where(left, np.copysign(t, w.imag), smaller)
-    return out
-
-
 def branch_wavenumber(omega: Any, rho_x: Any, bulk_modulus: Any) -> np.ndarray:
     """The kx at which a half-space's kz vanishes, w sqrt(rho_x / K), with Im >= 0 at real frequencies.
 
@@ -168,12 +154,12 @@ def outgoing_kz(kx: Any, omega: Any, rho_z: Any, rho_x: Any, bulk_modulus: Any) 
 
 def _root_of_product(kx: np.ndarray, b: np.ndarray) -> np.ndarray:
     """sqrt(b - kx) sqrt(b + kx), cuts upward from b and downward from -b; exactly real or imaginary where it should be."""
-    # plain: root(b - kx) root(b + kx), root(w) = e^{i pi/4} sqrt(-i w) being cut along -i.
-    # It is i sqrt(kx^2 - b^2) but for a sign: the plain form's two angles add up to beyond a half turn, where the principal
-    # root turns back, only if both factors lie on the same side, |Re kx| < |Re b|. kz and b then go the same way.
+    # `response.reference.root_of_product` takes two roots, root(w) = e^{i pi/4} sqrt(-i w) being cut along -i. Their product is
+    # i sqrt(kx^2 - b^2) but for a sign: the two angles add up to more than half a turn, where the principal root changes sign,
+    # only if both factors lie on the same side, |Re kx| < |Re b|. Re kz and Re b then have the same sign.
     root = np.asarray(kx - b)
     root *= kx + b
-    root = np.asarray(principal_root(root))
+    np.sqrt(root, out=root)
     turned = (np.abs(kx.real) < np.abs(b.real)) & (root.imag * b.real > 0)
     np.negative(root, out=root, where=turned)
     root *= 1j

@@ -1,26 +1,10 @@
-"""Sums by tables are the plain sums."""
+"""Where sums by tables are taken, and that fields and spectra do not change with them; the sums themselves: test_reference.py."""
 
 import numpy as np
 import pytest
 
 import beamprop as bp
 from beamprop.arrays import exponentials
-
-
-@pytest.mark.parametrize("count", [1, 2, 3, 128, 1001])
-@pytest.mark.parametrize("waves", [1, 7, 5000])
-def test_both_sums(count, waves, monkeypatch):
-    """To rounding, with complex k, at any number of positions, in one block or in many."""
-    monkeypatch.setattr(exponentials, "BLOCK", 2**12)
-    rng = np.random.default_rng(count)
-    k = rng.uniform(-50, 50, waves) - 0.3j * rng.uniform(0, 1, waves)
-    x = -1.3 + 0.004 * np.arange(count)
-    waves_of, weights = (rng.normal(size=n) + 1j * rng.normal(size=n) for n in ((2, waves), (count, 3)))
-    plain = np.exp(1j * np.multiply.outer(k, x))
-    found = exponentials.over_waves(k, waves_of, x[0], 0.004, count)
-    np.testing.assert_allclose(found, waves_of @ plain, rtol=0, atol=1e-13 * np.abs(waves_of).sum())
-    found = exponentials.over_positions(k, weights, x[0], 0.004)
-    np.testing.assert_allclose(found, (1 / plain) @ weights, rtol=0, atol=3e-13 * np.abs(weights).sum())
 
 
 def test_even_positions():

@@ -12,7 +12,7 @@ import numpy as np
 
 from .matmul import product
 
-#: Positions from which on tables are used: below, the plain sum takes as long.
+#: Number of positions from which on tables are used: with 3001 samples of a profile, a field at 2001 positions takes half the time.
 MANY = 128
 #: Complex numbers that the tables of a block of k hold.
 BLOCK = 2**20
@@ -28,8 +28,10 @@ def even_step(x: np.ndarray) -> float:
 
 
 def over_waves(k: np.ndarray, amplitudes: np.ndarray, start: float, step: float, count: int) -> np.ndarray:
-    """sum_k amplitudes exp(i k (start + j step)) for j < count: (Z, count) of amplitudes (Z, n)."""
-    # plain: amplitudes @ np.exp(1j * np.multiply.outer(k, start + step * np.arange(count)))
+    """sum_k amplitudes exp(i k (start + j step)) for j < count: (Z, count) of amplitudes (Z, n).
+
+    `response.reference.over_waves` at even positions.
+    """
     fine = math.isqrt(count - 1) + 1
     coarse = -(-count // fine)
     out = np.zeros((amplitudes.shape[0], coarse, fine), complex)
@@ -39,14 +41,16 @@ def over_waves(k: np.ndarray, amplitudes: np.ndarray, start: float, step: float,
         ik = 1j * k[part]
         outer = np.exp(np.multiply.outer(start + step * fine * np.arange(coarse), ik))
         inner = np.exp(np.multiply.outer(ik, step * np.arange(fine)))
-        for row, into in zip(amplitudes[:, part], out, strict=True):
-            into += product(outer * row, inner)
+        for row, total in zip(amplitudes[:, part], out, strict=True):
+            total += product(outer * row, inner)
     return out.reshape(amplitudes.shape[0], -1)[:, :count]
 
 
 def over_positions(k: np.ndarray, weights: np.ndarray, start: float, step: float) -> np.ndarray:
-    """sum_j weights_j exp(-i k (start + j step)): (n, B) of weights (J, B) and k (n,)."""
-    # plain: np.exp(-1j * np.multiply.outer(k, start + step * np.arange(len(weights)))) @ weights
+    """sum_j weights_j exp(-i k (start + j step)): (n, B) of weights (J, B) and k (n,).
+
+    `response.reference.over_positions` at even positions.
+    """
     count, beams = weights.shape
     fine = math.isqrt(count - 1) + 1
     coarse = -(-count // fine)

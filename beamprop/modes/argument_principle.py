@@ -137,8 +137,10 @@ def _halved(f: ManyDispersions, steps: _Steps, some: np.ndarray, alone: bool) ->
 
 
 def logarithm(value: np.ndarray, log: np.ndarray) -> np.ndarray:
-    """log D of D = value exp(log); its imaginary part but for whole turns."""
-    # plain: log + np.log(value), in real functions, which are three times as fast
+    """log D of D = value exp(log), its imaginary part up to whole turns.
+
+    `response.reference.logarithm` in real functions, which are three times as fast.
+    """
     out = np.empty(value.shape, complex)
     out.real = np.log(np.maximum(np.abs(value), 1e-300)) + np.real(log)
     out.imag = np.angle(value) + np.imag(log)

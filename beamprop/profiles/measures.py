@@ -11,7 +11,9 @@ from scipy.integrate import simpson
 
 from ..contour import choose, error_estimate
 from ..fields import evaluate
+from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
+from ..response.transfer_function import TransferFunction
 from ..sources.angles import single
 from ..sources.base import Beam
 from . import fwhm, power, sections
@@ -53,56 +55,40 @@ def reflected_and_transmitted(
     launched = _power(s, beam, _unchanged, False, rtol)
     out = []
     for transfer, place, behind in (
-        (_reflected(s, beam.z0), ray, False),
-        (_transmitted(s, beam.z0), ray + s.thickness * slope, True),
+        (transfer_function.reflected(s, beam.z0), ray, False),
+        (transfer_function.transmitted(s, beam.z0), ray + s.thickness * slope, True),
     ):
         out.append(_measure(s, beam, transfer, place, behind, launched, rtol, window))
     return out
 
 
-#: kx (n,), shift -> h (n,), at kx (1 + shift) and w (1 - shift): see `transfer_function`.
+#: kx (n,), shift -> H at a face (n,), at kx (1 + shift) and w (1 - shift): see `TransferFunction`.
 Face = Callable[..., np.ndarray]
-
-
-def _launch(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
-    return np.exp(-1j * s.kz_before(kx)[0] * z0)
 
 
 def _unchanged(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
     return np.ones(kx.shape)
 
 
-def _reflected(s: SampledSlab, z0: float) -> Face:
-    return lambda kx, shift=0.0: _response(s.perturbed(shift), kx * (1 + shift), z0, "r")
-
-
-def _transmitted(s: SampledSlab, z0: float) -> Face:
-    return lambda kx, shift=0.0: _response(s.perturbed(shift), kx * (1 + shift), z0, "t")
-
-
-def _response(s: SampledSlab, kx: np.ndarray, z0: float, name: str) -> np.ndarray:
-    """r or t of plane waves launched on z0."""
-    h: np.ndarray = getattr(s.response(kx), name)[0]
-    return h * _launch(s, kx, z0)
+def _at_face(transfer: TransferFunction) -> Face:
+    """A transfer function that is the same at all depths, as a function of kx alone."""
+    return lambda kx, shift=0.0: transfer(kx, np.zeros(1), shift)[0]
 
 
 def _measure(
     s: SampledSlab,
     beam: Beam,
-    face: Face,
+    transfer: TransferFunction,
     ray: float,
     behind: bool,
     launched: Radiated,
     rtol: float,
     window: float | None,
 ) -> tuple[Beamlet, float, float]:
+    face = _at_face(transfer)
     if not _any_beam(s, beam, face):
         return NO_BEAM, 0.0, 0.0
     plane = np.array([s.thickness])
-
-    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return np.broadcast_to(face(kx, shift), (z.size, kx.size))  # the beam at its face, whatever z
-
     for x in _windows(s, beam, ray, window):
         quadrature = choose.choose_contour(s, single(beam), transfer, x, plane, rtol)
         h = face(quadrature.contour.k)[None]
@@ -145,7 +131,10 @@ def _any_beam(s: SampledSlab, beam: Beam, face: Face) -> bool:
     """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
-    return bool(np.max(strength * np.abs(face(k))) > 1e-12 * np.max(strength * np.abs(_launch(s, k, beam.z0))))
+    return bool(
+        np.max(strength * np.abs(face(k)))
+        > 1e-12 * np.max(strength * np.abs(transfer_function.launched(s, k, beam.z0)))
+    )
 
 
 def _windows(s: SampledSlab, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:

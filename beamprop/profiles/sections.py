@@ -59,7 +59,7 @@ def far_face(s: SampledSlab, z0: float) -> Plane:
     """Transfer from the launch plane z0 to the far face."""
 
     def plane(kx: np.ndarray) -> np.ndarray:
-        return s.response(kx).t * np.exp(-1j * s.kz_before(kx) * z0)
+        return transfer_function.transmitted_at_face(s, kx, z0)
 
     return plane
 
@@ -68,7 +68,7 @@ def without(s: SampledSlab, distance: np.ndarray) -> Plane:
     """Transfer over distances (F,) in the medium in front."""
 
     def plane(kx: np.ndarray) -> np.ndarray:
-        return np.exp(1j * s.kz_before(kx) * distance[:, None])
+        return transfer_function.over_distance(s, kx, distance)
 
     return plane
 

@@ -13,8 +13,8 @@ What grows is taken out and kept as a logarithm.
 
 layer.py: one layer. cell.py: a cell and its powers. recursion.py: the way back through a slab. interior.py: the field there.
 slab.py: what is asked of a slab. reflection.py: r and t from the waves of each medium, for where the way back cancels.
-conditioning.py: r and t with estimated errors. bloch.py: infinite stacks. sampled_slab.py: a slab at given frequencies.
-transfer_function.py: what becomes of a plane wave in front of, inside and behind it.
+conditioning.py: r and t with estimated errors. walls.py: layers of density 0. bloch.py: infinite stacks. sampled_slab.py: a slab at given frequencies.
+transfer_function.py: H(kx, z), a plane wave in front of, inside and behind it. reference.py: the plain formulas, for tests.
 """
 
 from .bloch import bloch_error, bloch_wavenumber

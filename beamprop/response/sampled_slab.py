@@ -6,7 +6,6 @@ their branch points; what it is made of they do not know. `FluidSlab` is the one
 
 from __future__ import annotations
 
-import itertools
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -14,7 +13,8 @@ import numpy as np
 from ..conventions import outgoing_kz
 from ..media.fluids import FluidValues
 from ..media.structures import Slab
-from ..media.values import LayerValues, SegmentValues, slab_values
+from ..media.values import SegmentValues, slab_values
+from . import walls
 from .cell import bloch_phase, cell_matrix
 from .conditioning import SHIFT
 from .layer import at_frequencies, perturbed
@@ -286,38 +286,21 @@ class FluidSlab(NamedTuple):
         return self._replace(segments=segments, before=before, after=after)
 
     def up_to_wall(self) -> FluidSlab:
-        """It without what lies behind its first layer of density 0, which no plane wave off the normal passes."""
-        for i, (layers, _) in enumerate(self.segments):
-            walls = np.flatnonzero(np.any(layers.vanishing, axis=1))
-            if walls.size:
-                return self._replace(segments=[*self.segments[:i], _cut(self.segments[i], 0, walls[0] + 1)])
-        return self
+        """See `response.walls.up_to_wall`."""
+        return self._replace(segments=walls.up_to_wall(self.segments))
 
     def parts_between_walls(self) -> list[tuple[SampledSlab, int]]:
-        """Layers of density 0 are soft walls, p = 0, on both sides. Each part keeps the walls that bound it."""
-        found: list[tuple[list[SegmentValues], int]] = []
-        current: list[SegmentValues] = []
-        for segment in self.segments:
-            walls = [int(i) for i in np.flatnonzero(np.any(segment.layers.vanishing, axis=1))]
-            if not walls:
-                current.append(segment)
-                continue
-            front, back = _cut(segment, 0, walls[0] + 1), _cut(segment, walls[-1], None)
-            found.append(([*current, front], 1))
-            found += [([_cut(segment, a, b + 1)], segment.periods) for a, b in itertools.pairwise(walls)]
-            if segment.periods > 1:
-                found.append(([back, front], segment.periods - 1))
-            current = [back]
-        if not found:
+        """See `response.walls.parts_between`."""
+        parts = walls.parts_between(self.segments)
+        if len(parts) == 1:
             return [(self, 1)]
-        # of a half-space behind a wall nothing is felt, and its branch point is left out
-        unfelt = FluidValues(*np.ones((3, 1)))
-        closed = self._replace(before=unfelt, after=unfelt, branch_points=())
-        parts = [(closed._replace(segments=segments), n) for segments, n in found]
-        parts[0] = parts[0][0]._replace(before=self.before, branch_points=self.branch_points[:1]), 1
-        last = self._replace(segments=current, before=unfelt, branch_points=self.branch_points[1:])
-        parts.append((last, 1))
-        return [(part, n) for part, n in parts if not all(np.all(v.layers.vanishing) for v in part.segments)]
+        # the half-space behind a wall has no influence, and its branch point is left out
+        shielded = FluidValues(*np.ones((3, 1)))
+        front, behind = self.branch_points[:1], self.branch_points[1:]
+        slabs = [self._replace(segments=p, before=shielded, after=shielded, branch_points=()) for p, _ in parts]
+        slabs[0] = slabs[0]._replace(before=self.before, branch_points=front)
+        slabs[-1] = slabs[-1]._replace(after=self.after, branch_points=behind)
+        return [(slab, n) for slab, (segments, n) in zip(slabs, parts, strict=True) if not walls.all_walls(segments)]
 
     def take(self, i: Any) -> FluidSlab:
         """Frequency i, or frequencies i."""
@@ -368,8 +351,3 @@ def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> Flu
 def on_the_right(branch: Any) -> Any:
     """Of the branch points b and -b the one with Re kx >= 0: it lies below the axis for a half-space of backward waves."""
     return np.where(np.real(branch) < 0, -branch, branch)
-
-
-def _cut(segment: SegmentValues, start: int, stop: int | None) -> SegmentValues:
-    """Some layers of a cell, once."""
-    return SegmentValues(LayerValues(*(v[start:stop] for v in segment.layers)), 1)

@@ -15,11 +15,19 @@ from .recursion import Station, carry_back
 
 
 class Response(NamedTuple):
-    """r and t at the faces, and p(z) / (incident p at the near face) at the asked depths, (F, Z, n)."""
+    """r and t at the faces, and p(z) / (incident p at the near face) at the requested depths, (F, Z, n)."""
 
     r: np.ndarray
     t: np.ndarray
     inside: np.ndarray
+
+
+class Waves(NamedTuple):
+    """Amplitudes of the incident, the reflected and the transmitted wave, up to a common factor; the last without exp(-log)."""
+
+    incident: np.ndarray
+    reflected: np.ndarray
+    transmitted: np.ndarray
 
 
 def _near(
@@ -78,14 +86,14 @@ def solve(
     kz1, near, stations = _near(segments, front, behind, omega, kx, z)
     ikz = 1j * kz1
     by_p, by_q = ikz * near.p, front.rho_z * near.q
-    forward, backward, size = by_p + by_q, by_p - by_q, 2 * ikz
+    waves = Waves(by_p + by_q, by_p - by_q, 2 * ikz)
     grazing = kz1 == 0
     if np.any(grazing):
-        forward, backward, size = _grazing(near, grazing, forward, backward, size, front, behind, segments, omega)
-    with np.errstate(all="ignore"):  # what is not finite is refused by those who ask
-        per_incident = size / forward
+        waves = _at_grazing(waves, grazing, near, (front, behind), segments, omega)
+    with np.errstate(all="ignore"):  # api/ refuses what is not finite
+        per_incident = waves.transmitted / waves.incident
         t = per_incident * np.exp(-near.log)
-        r = backward / forward
+        r = waves.reflected / waves.incident
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
         if z.size:
             inside = fill_interior(stations, omega, kx, z, near.log, per_incident)
@@ -115,30 +123,27 @@ def _wall(segments: list[SegmentValues]) -> np.ndarray:
     return wall[:, None]
 
 
-def _grazing(
-    near: State,
+def _at_grazing(
+    waves: Waves,
     grazing: np.ndarray,
-    forward: np.ndarray,
-    backward: np.ndarray,
-    size: np.ndarray,
-    front: FluidValues,
-    behind: FluidValues,
+    near: State,
+    half_spaces: tuple[FluidValues, FluidValues],
     segments: list[SegmentValues],
     omega: np.ndarray,
-) -> tuple:
-    """r and t at kz_before = 0 exactly, where both may be 0/0.
+) -> Waves:
+    """The waves at kz_before = 0 exactly, where r and t may be 0/0.
 
-    In general q at the near face is not zero and r = -1, t = 0 come out by themselves. Where q vanishes with kz (no
+    In general q at the near face is not zero, and r = -1, t = 0 follow from the formulas. Where q vanishes with kz (no
     slab, or one matched at grazing, with equal half-spaces) the matrix is [[P, .], [0, 1/P]] and
-    ``t = 2/(P + 1/P)``, ``r = (P - 1/P)/(P + 1/P)``. q counts as zero when it is no more than rounding.
+    ``t = 2/(P + 1/P)``, ``r = (P - 1/P)/(P + 1/P)``. q counts as zero where it is within its rounding error.
     """
     rounding = sum(s.periods * np.abs(s.layers.compliance).sum(axis=0) for s in segments)[:, None] * np.abs(omega) ** 2
-    equal = np.all([np.equal(a, b) for a, b in zip(front, behind, strict=True)], axis=0)
+    equal = np.all([np.equal(a, b) for a, b in zip(*half_spaces, strict=True)], axis=0)
     zero = grazing & equal & (np.abs(near.q) <= 1e-12 * rounding * np.abs(near.p))
     with np.errstate(over="ignore"):
         inverse = np.where(zero, np.exp(-2 * near.log) / np.where(near.p == 0, 1.0, near.p), 0)
-    return (
-        np.where(zero, near.p + inverse, forward),
-        np.where(zero, near.p - inverse, backward),
-        np.where(zero, 2.0, size),
+    return Waves(
+        np.where(zero, near.p + inverse, waves.incident),
+        np.where(zero, near.p - inverse, waves.reflected),
+        np.where(zero, 2.0, waves.transmitted),
     )

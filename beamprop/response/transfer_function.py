@@ -1,62 +1,104 @@
-"""What becomes of a plane wave of the source on its way: the response in front of, inside and behind a slab.
+"""The transfer function H(kx, z): total pressure at z per unit of the source's spectrum on the launch plane.
 
-Everything here is for one frequency; a `SampledSlab` holds what does not change from line to line.
+Free propagation in a half-space and the launch from a plane z0 in front of the slab stand here and nowhere else.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from .sampled_slab import SampledSlab
 
-#: h(kx, z): what a plane wave of the source's spectrum has become at z; (Z, n).
-#: h(kx, z, shift): the same at kx (1 + shift) and w (1 - shift), to see what rounding does.
-TransferFunction = Callable[..., np.ndarray]
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """H(kx, z) of a slab at one frequency, for kx (n,) and depths z (Z,): (Z, n).
+
+    `pressure(slab, kx, z)` gives the values; `through`, `free`, `reflected` and `transmitted` make the usual ones.
+    """
+
+    slab: SampledSlab
+    pressure: Callable[[SampledSlab, np.ndarray, np.ndarray], np.ndarray]
+
+    def __call__(self, kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        """H(kx, z); with `shift` H at kx (1 + shift) and w (1 - shift): a second evaluation that shows rounding errors."""
+        return self.pressure(self.slab.perturbed(shift), kx * (1 + shift), z)
 
 
-def factors(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
-    """h(z, kx): total pressure at z per unit of the source's spectrum on z = z0; (Z, n)."""
+def through(s: SampledSlab, z0: float) -> TransferFunction:
+    """Total pressure in front of, inside and behind a slab, of a source on the launch plane z0."""
+    return TransferFunction(s, partial(total_pressure, z0=z0))
+
+
+def free(s: SampledSlab) -> TransferFunction:
+    """Propagation over the distance z in the medium in front alone."""
+    return TransferFunction(s, _without_slab)
+
+
+def reflected(s: SampledSlab, z0: float) -> TransferFunction:
+    """The reflected beam at the near face, whatever z."""
+    return TransferFunction(s, lambda s, kx, z: np.broadcast_to(reflected_at_face(s, kx, z0)[0], (z.size, kx.size)))
+
+
+def transmitted(s: SampledSlab, z0: float) -> TransferFunction:
+    """The transmitted beam at the far face, whatever z."""
+    return TransferFunction(s, lambda s, kx, z: np.broadcast_to(transmitted_at_face(s, kx, z0)[0], (z.size, kx.size)))
+
+
+def propagation(kz: np.ndarray, distance: Any) -> np.ndarray:
+    """exp(i kz distance): what an outgoing wave gains over a distance along its way in a half-space."""
+    return np.exp(1j * (kz * distance))
+
+
+def launched(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
+    """Incident pressure at the near face per unit of the spectrum on the launch plane z0: (F, n)."""
+    return propagation(s.kz_before(kx), -z0)
+
+
+def reflected_at_face(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
+    """Reflected pressure at the near face, of a source on z0: (F, n)."""
+    return s.response(kx).r * launched(s, kx, z0)
+
+
+def transmitted_at_face(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
+    """Transmitted pressure at the far face, of a source on z0: (F, n)."""
+    return s.response(kx).t * launched(s, kx, z0)
+
+
+def over_distance(s: SampledSlab, kx: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """Free propagation in the medium in front over a distance (F,) for each frequency: (F, n)."""
+    return propagation(s.kz_before(kx), distance[:, None])
+
+
+def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
+    """Total pressure at depths z (Z,) of a source on z0, at one frequency: (Z, n)."""
     out = np.empty((z.size, kx.size), complex)
     front, behind = z <= 0, z >= s.thickness
     inside = ~front & ~behind
     kz = s.kz_before(kx)[0]
-    launch = np.exp(-1j * kz * z0)
-    res = s.response(kx, z[inside])
+    launch = propagation(kz, -z0)
+    response = s.response(kx, z[inside])
     with np.errstate(under="ignore"):
         if front.any():
             depth = z[front][:, None]
-            out[front] = np.exp(1j * kz * (depth - z0)) + res.r[0] * launch * np.exp(-1j * kz * depth)
+            out[front] = propagation(kz, depth - z0) + response.r[0] * launch * propagation(kz, -depth)
         if inside.any():
-            out[inside] = res.inside[0] * launch if z0 else res.inside[0]
+            out[inside] = response.inside[0] * launch if z0 else response.inside[0]
         if behind.any():
-            kz2 = s.kz_after(kx)[0]
-            out[behind] = res.t[0] * launch * np.exp(1j * kz2 * (z[behind] - s.thickness)[:, None])
+            distance = (z[behind] - s.thickness)[:, None]
+            out[behind] = response.t[0] * launch * propagation(s.kz_after(kx)[0], distance)
     return out
 
 
-def through(s: SampledSlab, z0: float) -> TransferFunction:
-    """The transfer through a slab from the launch plane z0."""
-
-    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        return factors(s.perturbed(shift), kx * (1 + shift), z, z0)
-
-    return transfer
-
-
-def free(s: SampledSlab) -> TransferFunction:
-    """The transfer through the medium in front alone, over the distance z."""
-
-    def transfer(kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        kz = s.perturbed(shift).kz_before(kx * (1 + shift))[0]
-        with np.errstate(
-            over="ignore", invalid="ignore"
-        ):  # over 1e39 m no contour is flat enough: refused by its plane waves
-            return np.exp(1j * np.multiply.outer(z, kz))
-
-    return transfer
+def _without_slab(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+    # beyond 1e39 m the phase overflows; no contour is flat enough for such a distance, and its plane waves are refused
+    with np.errstate(over="ignore", invalid="ignore"):
+        return propagation(s.kz_before(kx)[0], z[:, None])
 
 
 #: Below this a ratio of two numbers may overflow.

@@ -57,7 +57,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
             "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
             "of it: cross approximation": ("fields/low_rank.py", "cross"),
             "of it: its planes summed": ("fields/evaluate.py", "fill"),
-            "the response, in both": ("response/transfer_function.py", "factors"),
+            "the response, in both": ("response/transfer_function.py", "total_pressure"),
             "labels, provenance": ("api/field_question.py", "labelled"),
         },
     ),
