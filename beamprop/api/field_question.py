@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from ..contour import paths
+from ..contour import sums
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
@@ -91,7 +91,7 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
 def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
     """The period of a periodic boundary; refused where neighbouring beams overlap."""
     if period is None:
-        dx = paths.grid_of(x).step
+        dx = sums.grid_of(x).step
         if not dx:
             raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
         period = dx * x.size

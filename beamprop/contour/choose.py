@@ -11,13 +11,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import memory
+from ..arrays.fft import fast_length
 from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation
 from ..sources.beams import Beam
-from . import error_estimate, paths, peak_outside, residues, stretches
-from .error_estimate import Checks
+from . import check_points, paths, peak_outside, residues, stretches, sums, survey
+from .check_points import Checks
+from .error import ESTIMATED, difference, sampled
 from .paths import BentPlan, Contour, Extent
 
 #: The most modes that a line may have, and how often a plan is widened before the asked rtol is given up.
@@ -31,7 +33,7 @@ FEWEST = 8
 
 def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
     """Spacing of a grid that is even as far as an FFT needs it (see `paths.grid_sum`), 0 for any other."""
-    grid = paths.grid_of(x)
+    grid = sums.grid_of(x)
     moved = band * grid.unevenness
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
 
@@ -70,7 +72,7 @@ class Quadrature(NamedTuple):
         """w S(k) and w S(-k) of the beams that are summed, about their middle: (B, n) each."""
         if self.amplitudes is not None and self.amplitudes[0].shape[0] == sources.angles.size:
             return self.amplitudes
-        return error_estimate.amplitudes(k0, sources, self.contour)
+        return sums.beam_amplitudes(k0, sources, self.contour)
 
 
 def choose_contour(
@@ -88,17 +90,17 @@ def choose_contour(
     by a second one. `guided` says whether the transfer knows guided modes (none without a slab).
     """
     reach = _reach(s, sources, x, z, rtol)
-    many = sources.weights is not None and sources.requested.size > error_estimate.ESTIMATED
-    points, planes = error_estimate.check_points(x, z, sources.beam.centre, reach.source, s.thickness, many)
+    many = sources.weights is not None and sources.requested.size > ESTIMATED
+    points, planes = check_points.check_points(x, z, sources.beam.centre, reach.source, s.thickness, many)
     if z.size > planes.size:
-        planes = np.union1d(planes, error_estimate.darkest_planes(sources, s.k0, transfer, z))
-    seen = error_estimate.survey(s, sources, transfer, points, planes, reach, rtol)
+        planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
+    seen = survey.survey(s, sources, transfer, points, planes, reach, rtol)
     checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
     return _chosen(s, checks, reach, seen, x, rtol)._replace(checked_planes=planes)
 
 
 def _chosen(
-    s: SampledSlab, checks: Checks, reach: Extent, seen: error_estimate.Survey, x: np.ndarray, rtol: float
+    s: SampledSlab, checks: Checks, reach: Extent, seen: survey.Survey, x: np.ndarray, rtol: float
 ) -> Quadrature:
     if not checks.sources.beam.entire:
         return _propagating_quadrature(s, checks, reach, rtol, seen)
@@ -121,16 +123,16 @@ MANY_PLANE_WAVES = 20_000
 class _Search:
     """The search for a contour: what is known of the poles on its wrong side, and the plan that has come so far."""
 
-    def __init__(self, s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: error_estimate.Survey) -> None:
+    def __init__(self, s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: survey.Survey) -> None:
         self.scene, self.checks, self.reach, self.rtol = s, checks, reach, rtol
         self.noise, self.sharp = seen.noise, seen.sharp
         self.plan: BentPlan = self._planned(math.inf)
         if self.too_wide():  # the spectrum of a sharp edge, but a slab lets little of it through
-            self.reach = reach._replace(band=error_estimate.arriving_band(s, checks, reach, rtol * 1e-3))
+            self.reach = reach._replace(band=survey.arriving_band(s, checks, reach, rtol * 1e-3))
             self.plan = self._planned(math.inf)
         if self.plan.nodes > MANY_PLANE_WAVES:
             low = checks.sources.low(s.k0, 1e-6 * rtol)
-            if low > 0 and error_estimate.wide_enough(checks.transfer, checks.z, low, self.reach.band):
+            if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, self.reach.band):
                 self.reach = self.reach._replace(low=low)
                 self.plan = self._planned(math.inf)
         self.found, self.searched = misplaced.NONE, 0.0 if checks.guided else math.inf
@@ -138,7 +140,7 @@ class _Search:
 
         self.ends = np.empty(0)  # where spectra are cut off that matter
         if checks.sources.requested.size <= MOST_CUT:
-            self.ends = error_estimate.cut_spectra(s, checks, self.reach, 0.1 * rtol)
+            self.ends = survey.cut_spectra(s, checks, self.reach, 0.1 * rtol)
 
     def _planned(self, deepest: float) -> BentPlan:
         return paths.plan_bent(self.reach, self.rtol, self.noise, deepest, self.sharp)
@@ -229,15 +231,15 @@ def _bent_quadrature(search: _Search) -> Quadrature:
             if best is not None and best.error.max() <= rtol:
                 return best
         contour, second = search.contours()
-        one, two = error_estimate.sampled(checks, contour, False), error_estimate.sampled(checks, second, True)
-        error, edge = error_estimate.difference(checks, one, two)
+        one, two = sampled(checks, contour, False), sampled(checks, second, True)
+        error, edge = difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
-            checks = error_estimate.with_dark_planes(checks)
-            error, edge = error_estimate.difference(checks, one, two)
+            checks = check_points.with_dark_planes(checks)
+            error, edge = difference(checks, one, two)
         if error.max() > rtol and best is not None:  # a wider window alone did not do
             if requested is None:
                 requested, checks = checks, peak_outside.with_wider_look(s, checks, search.reach, plan, found)
-            error, edge = error_estimate.difference(checks, one, two)
+            error, edge = difference(checks, one, two)
         stuck = best is not None and error.max() > 0.5 * best.error.max()
         if best is None or error.max() < best.error.max():
             best = Quadrature(contour, error, circles=bool(found.poles), amplitudes=one.amplitudes)
@@ -272,8 +274,8 @@ def _good_by_itself(search: _Search, checks: Checks, best: Quadrature) -> Quadra
     before = math.inf
     for _ in range(WIDENED):
         contour, second = search.contours()
-        one, two = error_estimate.sampled(checks, contour, False), error_estimate.sampled(checks, second, True)
-        error, edge = error_estimate.difference(checks, one, two)
+        one, two = sampled(checks, contour, False), sampled(checks, second, True)
+        error, edge = difference(checks, one, two)
         size = float(error.max())
         if size <= search.rtol:
             return Quadrature(contour, error, circles=bool(search.found.poles), amplitudes=one.amplitudes)
@@ -334,13 +336,11 @@ def _in_stretches(search: _Search) -> _Tried:
             continue
         if max(contour.k.size for contour in pair) > MOST_PLANE_WAVES:
             break
-        one, two = (
-            error_estimate.sampled(checks, contour, moved) for contour, moved in zip(pair, (False, True), strict=True)
-        )
-        error, edge = error_estimate.difference(checks, one, two)
+        one, two = (sampled(checks, contour, moved) for contour, moved in zip(pair, (False, True), strict=True))
+        error, edge = difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
-            checks = error_estimate.with_dark_planes(checks)
-            error, edge = error_estimate.difference(checks, one, two)
+            checks = check_points.with_dark_planes(checks)
+            error, edge = difference(checks, one, two)
         in_vain = in_vain + 1 if best is not None and error.max() > 0.5 * best.error.max() else 0
         if best is None or error.max() < best.error.max():
             best = Quadrature(pair[0], error, circles=True, amplitudes=one.amplitudes)
@@ -370,14 +370,14 @@ def _straight_quadrature(search: _Search, x: np.ndarray) -> Quadrature | None:
     size, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
         straight = paths.plan_straight(search.reach, rtol, tighten, search.noise)
-        n = paths.fast_length(max(math.ceil(share * straight.window / dx), x.size))
+        n = fast_length(max(math.ceil(share * straight.window / dx), x.size))
         if not fft_is_cheaper(n, size, x.size) or _is_misplaced(search.look()):
             return None
         if second is None:
-            second = error_estimate.sampled(checks, search.contours()[1], True)
+            second = sampled(checks, search.contours()[1], True)
         contour = paths.straight_contour(straight._replace(window=n * dx))
-        first = error_estimate.sampled(checks, contour, False)
-        error, _ = error_estimate.difference(checks, first, second)
+        first = sampled(checks, contour, False)
+        error, _ = difference(checks, first, second)
         if error.max() <= rtol:
             return Quadrature(contour, error, n, amplitudes=first.amplitudes)
     return None
@@ -427,7 +427,7 @@ def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
 
 
 def _propagating_quadrature(
-    s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: error_estimate.Survey
+    s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: survey.Survey
 ) -> Quadrature:
     """Gauss nodes over the propagating waves, doubled until two numbers of nodes, on contours that dip differently, agree."""
     count = _rays(reach.k0, reach.extent + reach.path)
@@ -438,11 +438,11 @@ def _propagating_quadrature(
             paths.propagating_contour(s.k0, s.real_branches, int(more * count), share * dip, share * seen.sharp)
             for more, share in ((1.0, 0.7), (1.4, 1.0))
         ]
-        one, two = (error_estimate.sampled(checks, contour, bool(moved)) for moved, contour in enumerate(contours))
-        error, _ = error_estimate.difference(checks, one, two)
+        one, two = (sampled(checks, contour, bool(moved)) for moved, contour in enumerate(contours))
+        error, _ = difference(checks, one, two)
         if error.max() > rtol and checks.dark is None:
-            checks = error_estimate.with_dark_planes(checks)
-            error, _ = error_estimate.difference(checks, one, two)
+            checks = check_points.with_dark_planes(checks)
+            error, _ = difference(checks, one, two)
         if error.max() <= rtol or count > MOST_PLANE_WAVES // 4:
             break
         count = int(1.8 * count)
@@ -455,6 +455,6 @@ def periodic_quadrature(s: SampledSlab, sources: AngleInterpolation, x: np.ndarr
     contour = paths.periodic_contour(period, band)
     dx = spacing_for_fft(x, band, paths.EPS)
     n = round(period / dx) if dx else 0
-    fits = n and abs(n * dx - period) < 4 * paths.EPS * period and paths.fast_length(n) == n
+    fits = n and abs(n * dx - period) < 4 * paths.EPS * period and fast_length(n) == n
     error = np.zeros(sources.angles.size if sources.weights is None else sources.weights.shape[0])
     return Quadrature(contour, error, n if fits and n >= x.size else 0)

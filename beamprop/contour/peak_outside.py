@@ -1,6 +1,6 @@
 """The largest |p| of a plane where a first look did not expect it: far outside of the positions that are asked for.
 
-Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`error_estimate.survey`).
+Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`survey.survey`).
 What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
 rtol the planes are therefore looked at once more, in a much wider window, with two shallow contours of low accuracy: a peak
 counts if both see it.
@@ -15,10 +15,11 @@ import numpy as np
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab
 from ..sources.angles import AngleInterpolation
-from . import paths
-from .error_estimate import Checks, amplitudes, interpolated
+from . import paths, sums
+from .check_points import Checks, interpolated
 from .paths import BentPlan, Extent
 from .residues import add_residues
+from .sums import beam_amplitudes
 
 #: How much wider than what is asked for, and than the way along z, the window is.
 WIDER, ALONG = 6.0, 4.0
@@ -43,9 +44,9 @@ def with_wider_look(s: SampledSlab, checks: Checks, reach: Extent, plan: BentPla
     peaks = []
     for i, p in enumerate((one, two)):
         contour = add_residues(s, paths.bent_contour(p), found, extent, reach.path, bool(i))
-        right, left = amplitudes(checks.k0, beams, contour)
+        right, left = beam_amplitudes(checks.k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
-            summed = paths.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
+            summed = sums.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
             peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))
     less, more = np.minimum(*peaks), np.maximum(*peaks)
     peaks_outside = np.where(less > (1 - AGREED) * more, less, 0.0)

@@ -6,7 +6,6 @@ Everything here is for one frequency; a `SampledSlab` holds what does not change
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -57,22 +56,3 @@ def free(s: SampledSlab) -> TransferFunction:
             return np.exp(1j * np.multiply.outer(z, kz))
 
     return transfer
-
-
-#: Below this a ratio of two numbers may overflow.
-FAINT = 1e-250
-
-
-def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
-    """How far plane waves are carried along x, by stationary phase: the least and the most of the strong ones along the last axis.
-
-    A plane wave of amplitude h lands at -d(arg h)/dkx; `low` and `high` are h a `step` below and above each kx.
-    """
-    twice = low + high
-    size = np.abs(twice)
-    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > FAINT)
-    slope = np.imag((high - low) / np.where(strong, step * twice, 1.0))
-    shift = np.where(strong, -slope, 0.0)
-    least, most = shift.min(-1, where=strong, initial=np.inf), shift.max(-1, where=strong, initial=-np.inf)
-    least, most = (np.where(np.isfinite(v), v, 0.0) for v in (least, most))
-    return least, most

@@ -57,43 +57,43 @@ class Term(NamedTuple):
 #: Every term of the estimate. Where the package's line changes, it changes here.
 TERMS = [
     Term(
-        "difference of two contours", "contour.error_estimate", "_difference",
+        "difference of two contours", "contour.error", "_difference",
         "np.max(np.abs(a - b), axis=2)", "0 * np.max(np.abs(a - b), axis=2)", tuple(range(15)),
     ),
     Term(
-        "rounding of a profile's samples", "contour.error_estimate", "_difference", "+ source) / scale", "+ 0 * source) / scale", (CANCELLED,),
+        "rounding of a profile's samples", "contour.error", "_difference", "+ source) / scale", "+ 0 * source) / scale", (CANCELLED,),
     ),
     Term(
-        "what lies beyond the band", "contour.error_estimate", "_beyond",
+        "what lies beyond the band", "contour.error", "_beyond",
         "return 2 * last * ratio / (1 - ratio)", "return 0 * last", tuple(cones()),
     ),
     Term(
-        "a spectrum that is cut off", "contour.error_estimate", "_difference", "error += cut / scale", "error += 0 * cut / scale",
+        "a spectrum that is cut off", "contour.error", "_difference", "error += cut / scale", "error += 0 * cut / scale",
         tuple(coarse_profiles()),
     ),
     Term(
-        "mixing of angles", "contour.error_estimate", "_difference", "error += 3 *", "error += 0 *", (MIXED,),
+        "mixing of angles", "contour.error", "_difference", "error += 3 *", "error += 0 *", (MIXED,),
     ),
     Term(
         "planes made of a few", "fields.evaluate", "_fill_low_rank", "return error", "return 0 * error", tuple(range(1, 600, 5)),
     ),
     Term(
-        "rounding of long phases", "contour.error_estimate", "_difference",
-        "return worst + paths.EPS * (4 + checks.k0 * way)", "return worst + 0 * way", tuple(tilted_plateaus()),
+        "rounding of long phases", "contour.error", "_difference",
+        "return worst + EPS * (4 + checks.k0 * way)", "return worst + 0 * way", tuple(tilted_plateaus()),
     ),
     Term(
-        "second response moved in its last bits", "contour.error_estimate", "sampled", "SHIFT if moved else 0.0", "0.0",
+        "second response moved in its last bits", "contour.error", "sampled", "SHIFT if moved else 0.0", "0.0",
         (*some("sharp resonances", 20), *some("LMMD, 1 or 100 000 periods", 20)),
     ),
     Term(
-        "brightness outside the window", "contour.error_estimate", "_difference",
+        "brightness outside the window", "contour.error", "_difference",
         "largest = np.maximum(largest, checks.peaks_outside)", "largest = largest * 1.0", (FAR,), False,
     ),
     Term(
-        "planes too dark to be seen", "contour.error_estimate", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (SHADOW, BLACK), False,
+        "planes too dark to be seen", "contour.error", "_difference", "seen = largest > DARK", "seen = largest > -1.0", (SHADOW, BLACK), False,
     ),
     Term(
-        "planes dark to rounding", "contour.error_estimate", "_difference", "(largest > DARK) & ~checks.dark", "(largest > DARK)", (WALL,), False,
+        "planes dark to rounding", "contour.error", "_difference", "(largest > DARK) & ~checks.dark", "(largest > DARK)", (WALL,), False,
     ),
 ]  # fmt: skip
 

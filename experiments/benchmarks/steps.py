@@ -53,7 +53,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "of it: poles on the wrong side": ("modes/misplaced.py", "misplaced"),
-            "of it: two contours compared": ("contour/error_estimate.py", "difference"),
+            "of it: two contours compared": ("contour/error.py", "difference"),
             "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
             "of it: cross approximation": ("fields/low_rank.py", "cross"),
             "of it: its planes summed": ("fields/evaluate.py", "fill"),
@@ -65,7 +65,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         angles,
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
-            "fields at the nodes": ("contour/paths.py", "fft_sum"),
+            "fields at the nodes": ("contour/sums.py", "fft_sum"),
             "angle interpolation": ("sources/angles.py", "interpolated_to"),
             "labels, provenance": ("api/field_question.py", "labelled"),
         },
@@ -73,7 +73,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "`beam_width`, 101 frequencies": (
         widths,
         {
-            "windows, by stationary phase": ("profiles/sections.py", "landing"),
+            "windows, by stationary phase": ("contour/stationary_phase.py", "landing"),
             "poles on the wrong side": ("profiles/sections.py", "_backward"),
             "contours and their response": ("profiles/sections.py", "_both_modes"),
             "samples, peak, edges": ("profiles/sections.py", "_measured"),
