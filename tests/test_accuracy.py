@@ -225,7 +225,7 @@ def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
 
     def worse(*args):
         solution = choose(*args)
-        return solution._replace(error=solution.error + 3e-4)
+        return solution._replace(budget=solution.budget._replace(difference=solution.budget.difference + 3e-4))
 
     monkeypatch.setattr(contour_choice, "choose_contour", worse)
     monkeypatch.setattr(

@@ -593,7 +593,9 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
     choose = contour_choice.choose_contour
     monkeypatch.setattr(
-        contour_choice, "choose_contour", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
+        contour_choice,
+        "choose_contour",
+        lambda *given: choose(*given)._replace(budget=contour_error.uniform_budget(1, 0.9999e-8 / 7)),
     )
     assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
 
@@ -605,10 +607,8 @@ def test_the_end_of_a_path_is_not_that_of_its_circles():
     with_discs = paths.Contour(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
     right = np.exp(-k / 2)[None]
     strong = np.concatenate([np.full((1, 400), 1e9 + 0j), right], axis=1)
-    alone = contour_error._beyond(contour_error.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
-    beside = contour_error._beyond(
-        contour_error.Sampled(with_discs, np.ones((1, 460)), (strong, strong)), strong, strong
-    )
+    alone = contour_error._beyond(contour_error.Sampled(line, np.ones((1, 60)), (right, right)))
+    beside = contour_error._beyond(contour_error.Sampled(with_discs, np.ones((1, 460)), (strong, strong)))
     np.testing.assert_allclose(beside, alone, rtol=1e-12)
     assert alone > 0
 

@@ -9,6 +9,7 @@ import xarray as xr
 
 from .. import validate
 from ..contour import sums
+from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
@@ -59,9 +60,9 @@ def checked_question(
     return question, Labels(axes, slab, beam, boundary, period, rtol)
 
 
-def largest(errors: np.ndarray) -> float:
-    """The largest of some estimates, 0 of those that are not known."""
-    return float(np.max(errors, initial=0.0, where=np.isfinite(errors)))
+def warn_of_field(worst: ErrorBudget, rtol: float) -> None:
+    """Warn of the error of a field's worst beam, with its largest term, if it is above rtol."""
+    checks.warn_if_inaccurate(float(worst.total[0]), rtol, stacklevel=4, mostly=worst.largest)
 
 
 def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:

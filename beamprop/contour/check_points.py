@@ -14,16 +14,18 @@ from . import near_normal
 
 
 class Checks(NamedTuple):
-    """Where two lines are compared."""
+    """Where two contours are compared."""
 
     sources: AngleInterpolation
     k0: float
     transfer: TransferFunction
     x: np.ndarray
     z: np.ndarray
-    guided: bool  #: whether the transfer knows guided modes (none without a slab)
-    peaks_outside: np.ndarray  #: |p| where each asked beam lands, if that is elsewhere, else 0; (A, Z)
-    dark: np.ndarray | None  #: whether a plane is dark to rounding for each asked beam, (A, Z); None until it matters
+    guided: bool  #: whether the transfer function has guided modes (none without a slab)
+    peaks_outside: np.ndarray  #: |p| where each requested beam lands, if that is elsewhere, else 0; (A, Z)
+    dark: (
+        np.ndarray | None
+    )  #: whether a plane is dark to rounding for each requested beam, (A, Z); None until it matters
 
 
 def check_points(
@@ -133,8 +135,19 @@ def strong_waves(beam: Beam, k0: float) -> np.ndarray:
     return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
 
 
+def _neighbours(at: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of those of `known`, increasing, that lie above and below each of `at`."""
+    above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
+    return above, np.where(known[above] == at, above, np.maximum(above - 1, 0))
+
+
 def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values (P, ...) at `known`, increasing, brought to `at`: the less of both neighbours'."""
-    above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
-    below = np.where(known[above] == at, above, np.maximum(above - 1, 0))
+    above, below = _neighbours(at, known)
     return np.minimum(values[above], values[below])
+
+
+def worse_neighbours(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The index, for each of `at`, of the neighbour among `known` with the larger of values (P,)."""
+    above, below = _neighbours(at, known)
+    return np.where(values[above] >= values[below], above, below)

@@ -13,8 +13,9 @@ import numpy as np
 
 from ..arrays import exponentials
 from ..contour import sums
-from ..contour.choose import Quadrature, fft_is_cheaper
 from ..contour.error import DARK
+from ..contour.quadrature import Quadrature
+from ..contour.straight import fft_is_cheaper
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, single
@@ -191,7 +192,7 @@ def _fill_low_rank(
     ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
     scale = np.max(np.abs(theirs), axis=2)
     scale = np.where(scale > DARK, scale, np.inf)
-    room = rtol - float(np.max(quadrature.error))  # what the line has left of rtol, if it keeps it
+    room = rtol - quadrature.worst  # what the line has left of rtol, if it keeps it
     allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
     for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
