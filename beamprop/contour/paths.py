@@ -38,8 +38,8 @@ EPS = float(np.finfo(float).eps)
 class Contour(NamedTuple):
     """Nodes k and weights w of ``p(x) = sum w h(k) [S(k) e^{ikx} + S(-k) e^{-ikx}]``.
 
-    `step` is the spacing of Re k for an even line that begins at ``first * step``, and 0 for uneven nodes. The first
-    `circles` nodes do not belong to the path: they go around single modes.
+    `step` is the spacing of Re k for an even contour that begins at ``first * step``, and 0 for uneven nodes. The first
+    `circles` nodes do not belong to the contour itself: they go around single modes.
     """
 
     k: np.ndarray
@@ -53,19 +53,19 @@ class Contour(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """What a line must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
+    """What a contour must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
 
     k0: Any  #: wavenumber of the medium in front
     branch: Any  #: smallest |kx| of a branch point, kb
     band: Any  #: largest |Re kx| of the source's spectrum
-    extent: Any  #: X, from the beam's middle to the farthest point asked for
+    extent: Any  #: X, from the beam's middle to the farthest requested point
     source: Any  #: reach of the launch profile about its middle
-    path: Any  #: Z, from the launch plane to the farthest plane asked for
+    path: Any  #: Z, from the launch plane to the farthest requested plane
     low: Any = 0.0  #: smallest |Re kx| of the source's spectrum
 
 
 class StraightPlan(NamedTuple):
-    """The four numbers of an open line; floats, or arrays (F,)."""
+    """The four numbers of a straight contour; floats, or arrays (F,)."""
 
     sigma: Any
     delta: Any
@@ -102,9 +102,9 @@ def plan_straight(reach: Extent, rtol: float, tighten: float = 1.0, noise: float
 
 
 def straight_contour(plan: StraightPlan) -> Contour:
-    """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
+    """The even contour k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
 
-    Of arrays (F,), one line a frequency with the same m for all: k and weight are (F, n).
+    Of arrays (F,), one contour a frequency with the same m for all: k and weight are (F, n).
     """
     from scipy.special import erfc
 

@@ -1,4 +1,4 @@
-"""The largest |p| of a plane where a first look did not expect it: far outside of the positions that are asked for.
+"""The largest |p| of a plane where a first look did not expect it: far outside of the requested positions.
 
 Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`survey.survey`).
 What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
@@ -21,9 +21,11 @@ from .paths import BentPlan, Extent
 from .residues import add_residues
 from .sums import beam_amplitudes
 
-#: How much wider than what is asked for, and than the way along z, the window is.
+#: How much wider than what is requested, and than the way along z, the window is: waves land four times as far to the side as they
+#: go along z if they are as steep as 76 degrees.
 WIDER, ALONG = 6.0, 4.0
-#: The accuracy of the look, the share by which both contours may differ, and the most plane waves and positions that it takes.
+#: The accuracy of the look, the share by which both contours may differ, and the most plane waves and positions that it takes: a
+#: peak is a scale, for which a tenth is enough, and 2e7 products take a tenth of a second.
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 

@@ -14,7 +14,7 @@ from .paths import Extent
 from .quadrature import Quadrature
 from .search import MOST_PLANE_WAVES
 
-#: How far the contour of propagating waves dips below the axis, over k0.
+#: How far the contour of propagating waves dips below the axis, over k0: as deep as a bent contour of SLOPE 0.35 lies there.
 DEEPEST_DIP = 0.3
 
 
@@ -28,8 +28,8 @@ def _dip(s: SampledSlab, reach: Extent, rtol: float, sharp: float) -> float:
     return dip if not found.poles else 0.0
 
 
-#: The most plane waves of a rotated beam whose width is asked for: a contour of so many is judged within some seconds, and then
-#: summed at some hundred positions.
+#: The most plane waves of a rotated beam whose width is asked for: their error is estimated within some
+#: seconds (3 us a plane wave), and some hundred positions are summed then.
 MOST_OF_WIDTHS = 600_000
 
 

@@ -28,7 +28,7 @@ def beam_amplitudes(k0: float, sources: AngleInterpolation, contour: Contour) ->
     return amplitudes(contour, lambda k: sources.spectra(k, k0), sources.beam.centre)
 
 
-#: The most exponentials that are held at a time.
+#: The most exponentials that are held at a time: 64 MB.
 MOST_PHASES = 4_000_000
 
 
@@ -88,7 +88,8 @@ class Grid(NamedTuple):
         return 0.0 if self.offsets is None else float(np.max(np.abs(self.offsets)))
 
 
-#: From what share of the step on an offset makes a grid uneven.
+#: From what share of the step on an offset makes a grid uneven: the slope then moves a plane wave of the shortest wavelength that the
+#: grid holds to (pi/100)^2/2 = 5e-4, and finer offsets are told by `straight.spacing_for_fft`.
 UNEVEN = 1e-2
 
 
@@ -104,12 +105,13 @@ def grid_of(x: np.ndarray) -> Grid:
     return grid if largest <= 4 * EPS * float(max(abs(x[0]), abs(x[-1]))) else grid._replace(offsets=offsets)
 
 
-#: On even grids of at least this many points exponentials are products of two small tables, this many apart.
+#: On even grids of at least this many points exponentials are products of two small tables, this many apart: an exponential takes
+#: ten times as long as a product, and two tables of 32 make 1024.
 TABLE, STEP = 64, 32
 
 
 def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
+    """e^{ikx} and, if `both`, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
 
     `dk` is the spacing of even nodes k, if they are.
     """
@@ -172,7 +174,7 @@ def fft_sum(
     n: int,
     out: np.ndarray | None = None,
 ) -> np.ndarray:
-    """p at even x = x_0 + j dx (relative to the centre), where line.step = 2 pi/(n dx): two FFTs a plane.
+    """p at even x = x_0 + j dx (relative to the centre), where contour.step = 2 pi/(n dx): two FFTs a plane.
 
     Planes go through in blocks that stay in the cache. With amplitudes (B, n) of B beams the answer is (B, Z, X);
     `out`, of its shape and contiguous, is filled if given.
@@ -208,7 +210,7 @@ def fft_sum(
     return flat.reshape(shape)
 
 
-#: Numbers in a block of slopes, by which fields are moved from an even grid to the positions asked for.
+#: Numbers in a block of slopes, by which fields are moved from an even grid to the requested positions: 16 MB.
 SLOPES = 2**20
 
 
@@ -221,7 +223,7 @@ def grid_sum(
     n: int,
     out: np.ndarray | None = None,
 ) -> np.ndarray:
-    """`fft_sum` at the positions that were asked for: p + offset dp/dx where they lie off the even grid.
+    """`fft_sum` at the requested positions: p + offset dp/dx where they lie off the even grid.
 
     What is left out is (k offset)^2/2 of a plane wave.
     """

@@ -5,7 +5,7 @@ the launch profile, |xi| <= reach: a function of s that a polynomial through a f
 any number of angles are made, by a real matrix, of those at the nodes. The polynomial of r nodes errs by no more than
 2 (c/2)^r / r!, c = k0 reach (s_max - s_min)/2, of what the source sends (the next Bessel function of the Jacobi-Anger series).
 The error goes with s as the Chebyshev polynomial T_r, for what is left out, T_(r+j), looks like -T_(r-j) at the nodes, and
-T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`contour.error_estimate`).
+T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at the nodes and is largest at both extremes. There it is measured (`contour.error`).
 """
 
 from __future__ import annotations
