@@ -137,7 +137,7 @@ def _with_wider_look(search: Search, planned: Planned, compared: Compared) -> Co
 
 
 #: How often a contour that keeps rtol by a peak far outside is widened for the window alone, and the most plane waves it may have
-#: then: some thousand cost a tenth of a second.
+#: then: 80 kB of the response a plane.
 WIDENED, MOST_WIDENED = 5, 5_000
 
 

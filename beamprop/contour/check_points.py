@@ -63,8 +63,7 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
 
 # --- dark planes ------------------------------------------------------------------------------------------
 
-#: Planes that are compared besides: so many of the darkest for each of three beams (each plane costs as much as the seven that are
-#: always compared), if they are darker by this than others within half a wavelength in front and behind: a standing wave of two
+#: Planes that are compared besides: so many of the darkest for each of three beams, if they are darker by this than others within half a wavelength in front and behind: a standing wave of two
 #: waves of ratio 0.54 or nearer to 1 has such nodes.
 DARKEST, DARKER = 4, 0.3
 #: How far beside a plane it is looked whether it is brighter there, in wavelengths in front of the slab; and how much darker a

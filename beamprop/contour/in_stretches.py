@@ -11,8 +11,8 @@ from .paths import Contour
 from .quadrature import Quadrature
 from .search import MOST_PLANE_WAVES, Search, refusal, too_many
 
-#: How often a contour in stretches is planned again: each has shorter panels and another depth, or a wider band. Panels shorter by
-#: 1.4 each time, with 20 Gauss nodes on each, are at rounding after two or three; the rest is for the band.
+#: How often a contour in stretches is planned again: each has shorter panels and another depth, or a wider band. A
+#: band may so grow by 1.5^6 = 11, or panels be shortened by 1.4^6 = 7.5.
 TRIES = 7
 
 

@@ -25,7 +25,7 @@ from .sums import beam_amplitudes
 #: go along z if they are as steep as 76 degrees.
 WIDER, ALONG = 6.0, 4.0
 #: The accuracy of the look, the share by which both contours may differ, and the most plane waves and positions that it takes: a
-#: peak is a scale, for which a tenth is enough, and 2e7 products take a tenth of a second.
+#: peak is a scale, for which a tenth is enough.
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 

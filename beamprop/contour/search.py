@@ -17,11 +17,11 @@ from . import paths, residues, survey
 from .check_points import Checks
 from .paths import BentPlan, Contour, Extent
 
-#: The most plane waves of a contour: their response takes 3 MB a plane, and the estimate of their error some seconds.
+#: The most plane waves of a contour: their response takes 3.2 MB a plane.
 MOST_PLANE_WAVES = 200_000
 #: The most beams whose spectra's ends a contour meets on the axis: each end takes panels of its own.
 MOST_CUT = 8
-#: From how many plane waves on those nearer to the normal than a beam's own are left out; below, they cost less than the test of it.
+#: From how many plane waves on those nearer to the normal than a beam's own are left out.
 MANY_PLANE_WAVES = 20_000
 #: What the ends of spectra and bands are looked for with, over rtol: three digits below it, so that none of them shows.
 BELOW_RTOL = 1e-3

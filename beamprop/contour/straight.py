@@ -11,13 +11,13 @@ from . import error, paths, sums
 from .quadrature import Quadrature
 from .search import Planned, Search, pair_of_contours, with_poles
 
-#: FFTs are for even grids of at least this many points: below, whatever is chosen takes microseconds.
+#: FFTs are for even grids of at least this many points.
 FEWEST = 8
 #: What share of its window a straight contour is tried with first, and how much more of everything it is given then: a plan's
 #: error terms are bounds, which most fields keep with less.
 TRIES = ((0.78, 1.0), (0.9, 1.0), (1.0, 1.4))
-#: Time of a step of an FFT (one of n log2 n, two FFTs a plane), over that of a multiplication in a matrix product;
-#: experiments/benchmarks/run.py has rows of both.
+#: Time of two FFTs over n log2 n, over the time of a multiplication in a matrix product; measured: `experiments/benchmarks/steps.py` has
+#: the row of FFTs against matrix products.
 FFT_STEP = 5.5
 
 

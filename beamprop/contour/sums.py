@@ -105,8 +105,8 @@ def grid_of(x: np.ndarray) -> Grid:
     return grid if largest <= 4 * EPS * float(max(abs(x[0]), abs(x[-1]))) else grid._replace(offsets=offsets)
 
 
-#: On even grids of at least this many points exponentials are products of two small tables, this many apart: an exponential takes
-#: ten times as long as a product, and two tables of 32 make 1024.
+#: On even grids of at least this many points exponentials are products of two small tables, this many apart: a
+#: grid of n points takes n/32 + 32 exponentials and n products.
 TABLE, STEP = 64, 32
 
 

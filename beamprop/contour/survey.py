@@ -91,8 +91,8 @@ def _change(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.max(change, initial=0.0, where=np.isfinite(change)))
 
 
-#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum: a tenth
-#: of a second, at 10 ns a term and some for the response.
+#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum: beyond,
+#: no peak outside is known, and estimates are larger.
 MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 

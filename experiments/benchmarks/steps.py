@@ -14,7 +14,7 @@ from run import BEAM, FREQUENCY, SLAB, grids
 from timing import amount, measure
 
 import beamprop as bp
-from beamprop.contour import choose
+from beamprop.contour import straight
 from beamprop.fields import evaluate, question
 from beamprop.response import cell, interior
 from beamprop.sources import angles as source_angles
@@ -118,8 +118,8 @@ class Step(NamedTuple):
 STEPS = [
     Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
     Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", 10**9),
-    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
-    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
+    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "interpolate_angles", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
+    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), straight, "fft_is_cheaper", lambda *_: False),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
     Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
     Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),
