@@ -63,8 +63,8 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
 
 # --- dark planes ------------------------------------------------------------------------------------------
 
-#: Planes that are compared besides: so many of the darkest for each of three beams, if they are darker by this than others within half a wavelength in front and behind: a standing wave of two
-#: waves of ratio 0.54 or nearer to 1 has such nodes.
+#: Planes that are compared besides: so many of the darkest for each of three beams, if they are darker by this than others within
+#: half a wavelength in front and behind: a standing wave of two waves of ratio 0.54 or nearer to 1 has such nodes.
 DARKEST, DARKER = 4, 0.3
 #: How far beside a plane it is looked whether it is brighter there, in wavelengths in front of the slab; and how much darker a
 #: plane may be before what is left on it is rounding: 1e-11 of what stands a thousandth of a wavelength beside it.
@@ -77,18 +77,18 @@ def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFun
     By the strong plane waves of some of the beams: what is dark for all of them is dark for the beam (Parseval).
     """
     order = np.sort(z)
-    found: list[float] = []
-    some = sources.spread(3)
-    for angle in sources.requested[some]:
+    darkest: list[float] = []
+    chosen = sources.spread(3)
+    for angle in sources.requested[chosen]:
         darker = _darkness(_strengths(sources.at(float(angle)), k0, transfer, order), order, np.pi / k0)
         picked: list[float] = []
         for i in np.argsort(darker, kind="stable"):
             if darker[i] > DARKER or len(picked) == DARKEST:
                 break
-            if all(abs(order[i] - other) > 0.1 / k0 for other in picked):
+            if all(abs(order[i] - plane) > 0.1 / k0 for plane in picked):
                 picked.append(float(order[i]))
-        found += picked
-    return np.unique(found)
+        darkest += picked
+    return np.unique(darkest)
 
 
 def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
@@ -109,12 +109,12 @@ def with_dark_planes(checks: Checks) -> Checks:
     sources, k0, transfer, z = checks.sources, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
     near = np.concatenate([z, np.maximum(z - step, sources.beam.z0), z + step])
-    some = sources.spread(9)
+    chosen = sources.spread(9)
     dark = []
-    for angle in sources.requested[some]:
+    for angle in sources.requested[chosen]:
         here, front, behind = np.split(_strengths(sources.at(float(angle)), k0, transfer, near), 3)
         dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
-    return checks._replace(dark=interpolated(sources.requested, sources.requested[some], np.array(dark)))
+    return checks._replace(dark=interpolated(sources.requested, sources.requested[chosen], np.array(dark)))
 
 
 def _strengths(beam: Beam, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:

@@ -42,8 +42,8 @@ def survey(
     """
     k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
     requested = sources.requested
-    some = sources.spread(3)
-    rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[some]])
+    chosen = sources.spread(3)
+    rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[chosen]])
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
@@ -58,14 +58,14 @@ def survey(
     sharp = math.inf
     if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
         sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
-    middle, half = _landing(sources, h[:, 2 * k.size + near.size :], some.size, step)
+    middle, half = _landing(sources, h[:, 2 * k.size + near.size :], chosen.size, step)
     peaks_outside = np.zeros((requested.size, z.size))
     if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
         if z.size > 1:
-            middle, half = _landing(sources, transfer(beside, z), some.size, step)
+            middle, half = _landing(sources, transfer(beside, z), chosen.size, step)
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
         peaks_outside = interpolated(
-            requested, requested[some], _brightness(s, sources, transfer, z, requested[some], places.ravel())
+            requested, requested[chosen], _brightness(s, sources, transfer, z, requested[chosen], places.ravel())
         )
     return Survey(noise, peaks_outside, sharp)
 
@@ -108,17 +108,17 @@ def _brightness(
     x = x - sources.beam.centre
     path = float(z.max()) - sources.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
-    found = np.full((2, angles.size, z.size), np.inf)
+    largest = np.full((2, angles.size, z.size), np.inf)
     if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
-        return np.zeros(found.shape[1:])
+        return np.zeros(largest.shape[1:])
     beams = AngleInterpolation(sources.beam, angles)
     for i, more in enumerate((1.0, 1.4)):
         contour = paths.propagating_contour(s.k0, s.real_branches, int(more * count))
         right, left = beam_amplitudes(s.k0, beams, contour)
         with np.errstate(invalid="ignore", over="ignore"):
             p = sums.direct_sum(contour, transfer(contour.k, z), right, left, x)
-            found[i] = np.max(np.abs(p), axis=2)
-    return np.nan_to_num(found.min(axis=0), nan=0.0, posinf=0.0)
+            largest[i] = np.max(np.abs(p), axis=2)
+    return np.nan_to_num(largest.min(axis=0), nan=0.0, posinf=0.0)
 
 
 def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> float:
