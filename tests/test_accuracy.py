@@ -9,7 +9,7 @@ import pytest
 
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
-from beamprop.contour import error_estimate, paths
+from beamprop.contour import paths, survey
 from beamprop.profiles import sections
 from beamprop.response import sampled_slab, transfer_function
 from beamprop.sources import angles
@@ -139,7 +139,7 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
     s = sampled_slab.sample(slab, F)
     reach = paths.Extent(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes = np.array([-20.0, slab.thickness])
-    found = error_estimate.survey(
+    found = survey.survey(
         s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
     ).peaks_outside[0, 1]
     assert 0.3 * peak < found < 1.1 * peak
@@ -150,7 +150,7 @@ def test_a_beam_that_lands_in_the_window_is_not_looked_for():
     reach = paths.Extent(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes, x = np.array([0.0, 0.1]), np.linspace(-1, 1, 11)
     beam = bp.GaussianBeam(0.3, 30.0, z0=-1.0)
-    assert not error_estimate.survey(
+    assert not survey.survey(
         s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
     ).peaks_outside.any()
 
@@ -225,7 +225,7 @@ def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
 
     def worse(*args):
         solution = choose(*args)
-        return solution._replace(error=solution.error + 3e-4)
+        return solution._replace(budget=solution.budget._replace(difference=solution.budget.difference + 3e-4))
 
     monkeypatch.setattr(contour_choice, "choose_contour", worse)
     monkeypatch.setattr(
@@ -313,14 +313,14 @@ def warned_field(beam, xs):
 
 def test_fields_of_many_waves_and_points_take_bounded_memory():
     """100 000 waves on 2048 points: the matrix of their phases, 3 GB, is never whole."""
-    from beamprop.contour import paths
+    from beamprop.contour import sums
 
     k = np.linspace(0, 100, 5000).astype(complex)
     x = np.linspace(-1, 1, 999)
     h, right = np.exp(-k)[None], np.exp(-k / 10)
     line = paths.Contour(k, np.ones(k.size))
     whole = (h * right) @ np.exp(1j * np.outer(k, x)) + (h * right) @ np.exp(-1j * np.outer(k, x))
-    np.testing.assert_allclose(paths.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
+    np.testing.assert_allclose(sums.direct_sum(line, h, right, right, x), whole, rtol=1e-12)
 
 
 # --- nothing that is not finite ---------------------------------------------------------------------------

@@ -5,28 +5,28 @@ import pytest
 from sided import BULK, K0, RHO, F
 
 import beamprop as bp
-from beamprop.contour import error_estimate, paths
+from beamprop.contour import paths, sums, survey
 from beamprop.response.sampled_slab import sample
 from beamprop.sources.angles import AngleInterpolation, single
 
 
 def test_a_grid_and_what_positions_are_off_it():
     x = np.linspace(-1, 1, 101)
-    assert paths.grid_of(x).offsets is None
-    assert paths.grid_of(x).even == pytest.approx(x, abs=1e-15)
+    assert sums.grid_of(x).offsets is None
+    assert sums.grid_of(x).even == pytest.approx(x, abs=1e-15)
     moved = x + 1e-4 * np.sin(np.arange(101)) * (x[1] - x[0])
-    grid = paths.grid_of(moved)
+    grid = sums.grid_of(moved)
     assert grid.even + grid.offsets == pytest.approx(moved, abs=1e-15)
     assert grid.unevenness == np.abs(moved - grid.even).max() > 0
-    assert paths.grid_of(np.geomspace(1, 2, 101)).step == 0
-    assert paths.grid_of(np.array([0.3])).step == 0
+    assert sums.grid_of(np.geomspace(1, 2, 101)).step == 0
+    assert sums.grid_of(np.array([0.3])).step == 0
 
 
 def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     """Of a few plane waves, term by term; what offsets of 1e-9 m cost, (k offset)^2/2, is 2e-13 here."""
     n, dx, rng = 256, 1 / 128, np.random.default_rng(1)
     x = dx * (np.arange(200) - 100) + 1e-9 * rng.standard_normal(200)
-    grid = paths.grid_of(x)
+    grid = sums.grid_of(x)
     step = 2 * np.pi / (n * grid.step)
     k = step * np.arange(-20, 60) - 0.3j
     line = paths.Contour(k, np.ones(k.size), step, -20, 0.3, 1.0)
@@ -35,7 +35,7 @@ def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     turn = np.exp(1j * np.outer(k, x))
     truth = (h * right) @ turn + (h * left) @ (1 / turn)
     assert grid.offsets is not None
-    p = paths.grid_sum(line, h, right, left, grid, n)
+    p = sums.grid_sum(line, h, right, left, grid, n)
     assert np.abs(p - truth).max() < 3e-12 * np.abs(truth).max()
 
 
@@ -78,14 +78,14 @@ def test_how_near_a_pole_lies_to_the_origin(distance):
     s = sample(bp.Slab.uniform(bp.AIR, 0.1), F)
     reach = paths.Extent(s.k0, s.k0, 12.0, 1.0, 1.0, 0.2)
 
-    def survey(square):
+    def sharp(square):
         def transfer(k, z, shift=0.0):
             return np.broadcast_to(square / (square - k**2) if square else np.cos(k), (np.size(z), k.size)) + 0j
 
-        return error_estimate.survey(s, single(beam), transfer, x, z, reach, 1e-8).sharp
+        return survey.survey(s, single(beam), transfer, x, z, reach, 1e-8).sharp
 
-    assert survey(0) == np.inf
-    assert distance / 16 < survey(1j * distance**2) <= distance
+    assert sharp(0) == np.inf
+    assert distance / 16 < sharp(1j * distance**2) <= distance
 
 
 def test_loss_is_added_to_everything():

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import beamprop as bp
 from beamprop import response
-from beamprop.contour import paths
+from beamprop.contour import paths, sums
 from beamprop.conventions import outgoing_kz
 from beamprop.media.values import slab_values
 
@@ -414,14 +414,14 @@ def line_and_sums():
     line = paths.straight_contour(paths.plan_straight(reach, 1e-8)._replace(window=n * dx))
     h = amplitudes(LOSSLESS, line.k, np.linspace(0.001, 0.05, 5))[2]
     beam = bp.GaussianBeam(0.05, 50.0, x0=0.1)
-    return line, h, *paths.amplitudes(line, lambda k: beam.spectrum(k, K0), 0.1), (np.arange(240) - 130) * dx, n
+    return line, h, *sums.amplitudes(line, lambda k: beam.spectrum(k, K0), 0.1), (np.arange(240) - 130) * dx, n
 
 
 def test_the_fast_sum_is_the_matrix_product():
     """Two FFTs a plane and the plain sum over the same nodes give the same field."""
     line, h, right, left, x, n = line_and_sums()
     assert np.any(left)
-    fast, slow = paths.fft_sum(line, h, right, left, x, n), paths.direct_sum(line, h, right, left, x)
+    fast, slow = sums.fft_sum(line, h, right, left, x, n), sums.direct_sum(line, h, right, left, x)
     np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
 
 
@@ -430,8 +430,8 @@ def test_the_fast_sum_folds_a_band_wider_than_its_grid():
     line, h, right, left, x, n = line_and_sums()
     coarse, few = x[::20], n // 20
     assert line.k.size > few
-    fast = paths.fft_sum(line, h, right, left, coarse, few)
-    slow = paths.direct_sum(line, h, right, left, coarse)
+    fast = sums.fft_sum(line, h, right, left, coarse, few)
+    slow = sums.direct_sum(line, h, right, left, coarse)
     np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
 
 

@@ -9,7 +9,8 @@ from closeness import RTOL, close
 import beamprop as bp
 from beamprop.arrays import fft, matmul
 from beamprop.contour import choose as contour_choice
-from beamprop.contour import error_estimate, paths
+from beamprop.contour import error as contour_error
+from beamprop.contour import paths, sums
 from beamprop.fields import evaluate, low_rank
 from beamprop.profiles import sections
 from beamprop.response import reference
@@ -51,8 +52,8 @@ def test_sums_over_a_line(seed):
     wanted = reference.field(h, right, left, line.k, x)
     scale = math.sqrt(line.k.size) * np.abs(h).max() * np.exp(0.7)
     phases = np.abs(line.k).max() * np.abs(x).max()  # whose rounding no order of sums avoids
-    assert np.abs(paths.fft_sum(line, h, right, left, x, n) - wanted).max() < (RTOL + 4e-16 * phases) * scale
-    assert np.abs(paths.direct_sum(line, h, right, left, x) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+    assert np.abs(sums.fft_sum(line, h, right, left, x, n) - wanted).max() < (RTOL + 4e-16 * phases) * scale
+    assert np.abs(sums.direct_sum(line, h, right, left, x) - wanted).max() < (RTOL + 4e-16 * phases) * scale
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -61,9 +62,9 @@ def test_many_beams_at_once(seed):
     line, h, right, left, x, n = random_sum(rng)
     rights, lefts = np.stack([right, 2j * right, right * right]), np.stack([left, left * 0, 3 * left])
     each = zip(rights, lefts, strict=True)
-    wanted = np.stack([paths.direct_sum(line, h, a, b, x) for a, b in each])
-    close(paths.direct_sum(line, h, rights, lefts, x), wanted, rtol=1e-11)
-    close(paths.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
+    wanted = np.stack([sums.direct_sum(line, h, a, b, x) for a, b in each])
+    close(sums.direct_sum(line, h, rights, lefts, x), wanted, rtol=1e-11)
+    close(sums.fft_sum(line, h, rights, lefts, x, n), wanted, rtol=1e-11)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -200,7 +201,7 @@ def test_errors_of_many_angles_are_judged_by_some(count, monkeypatch):
         np.linspace(-85, 85, count)[np.random.default_rng(0).permutation(count)],
     )
     some = bp.field(slab, beam, 2500.0, x, z, angle=angles)
-    monkeypatch.setattr(error_estimate, "ESTIMATED", 1000)
+    monkeypatch.setattr(contour_error, "ESTIMATED", 1000)
     all_of_them = bp.field(slab, beam, 2500.0, x, z, angle=angles)
     np.testing.assert_array_equal(some.p, all_of_them.p)
     assert np.all(some.error_estimate > 0.5 * all_of_them.error_estimate)
@@ -298,7 +299,9 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
     choose = contour_choice.choose_contour
     monkeypatch.setattr(
-        contour_choice, "choose_contour", lambda *given: choose(*given)._replace(error=np.array([0.9999e-8]))
+        contour_choice,
+        "choose_contour",
+        lambda *given: choose(*given)._replace(budget=contour_error.uniform_budget(1, 0.9999e-8 / 7)),
     )
     assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
 
@@ -310,10 +313,8 @@ def test_the_end_of_a_path_is_not_that_of_its_circles():
     with_discs = paths.Contour(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)
     right = np.exp(-k / 2)[None]
     strong = np.concatenate([np.full((1, 400), 1e9 + 0j), right], axis=1)
-    alone = error_estimate._beyond(error_estimate.Sampled(line, np.ones((1, 60)), (right, right)), right, right)
-    beside = error_estimate._beyond(
-        error_estimate.Sampled(with_discs, np.ones((1, 460)), (strong, strong)), strong, strong
-    )
+    alone = contour_error._beyond(contour_error.Sampled(line, np.ones((1, 60)), (right, right)))
+    beside = contour_error._beyond(contour_error.Sampled(with_discs, np.ones((1, 460)), (strong, strong)))
     np.testing.assert_allclose(beside, alone, rtol=1e-12)
     assert alone > 0
 

@@ -191,12 +191,12 @@ def test_plane_waves_in_parts_are_the_same(monkeypatch):
 @pytest.mark.parametrize("even", [True, False])
 def test_rows_in_parts_are_the_same(monkeypatch, even):
     """A long row is summed in parts: the field is the same to rounding."""
-    from beamprop.contour import paths
+    from beamprop.contour import sums
 
     x = np.linspace(-1, 1, 5000) if even else np.sort(np.random.default_rng(1).uniform(-1, 1, 5000))
     ask = lambda: bp.field(SLAB, BEAM, 2500.0, x, [0.0, 0.1, 0.2], angle=[0.0, 10.0]).p  # noqa: E731
     whole = ask()
-    monkeypatch.setattr(paths, "POINTS_AT_A_TIME", 300)
+    monkeypatch.setattr(sums, "POINTS_AT_A_TIME", 300)
     monkeypatch.setattr("beamprop.fields.evaluate.fft_is_cheaper", lambda *_: False)
     parts = ask()
     assert float(abs(parts - whole).max()) < 1e-9 * float(abs(whole).max())

@@ -1,6 +1,7 @@
 """How the accuracy study judges: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
 
 import ast
+import importlib
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +13,8 @@ import xarray as xr
 sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
 from accuracy_study import report, terms
+
+from beamprop.contour import error
 
 ROOT = Path(__file__).parents[1]
 NAN = np.nan
@@ -73,13 +76,26 @@ def test_tables_count_and_list_what_is_needless():
 @pytest.mark.parametrize("term", terms.TERMS, ids=lambda term: term.name)
 def test_terms_are_where_the_table_says(term):
     """A term that has moved or gone is to be changed in the table too."""
-    import importlib
-
     module = importlib.import_module(f"beamprop.{term.module}")
-    kept = getattr(module, term.function)
+    kept = getattr(module, term.attribute)
     with terms.switched_off(term):
-        assert getattr(module, term.function) is not kept
-    assert getattr(module, term.function) is kept
+        assert getattr(module, term.attribute) is not kept
+    assert getattr(module, term.attribute) is kept
+
+
+def test_every_term_of_the_budget_is_in_the_table():
+    """Each is set to zero by one row of the table: what is left of a budget of ones is 0 there."""
+    ones = error.Estimate(error.uniform_budget(3, 1.0), 0.0)
+    zeroed = [
+        name
+        for term in terms.TERMS
+        if term.attribute == "terms_by_plane"
+        for name, values in term.without(lambda: ones)().budget._asdict().items()
+        if not values.any()
+    ]
+    other = {"_beyond": "band_end", "_fill_low_rank": "low_rank"}
+    zeroed += [other[term.attribute] for term in terms.TERMS if term.attribute in other]
+    assert sorted(zeroed) == sorted(error.ErrorBudget._fields)
 
 
 @pytest.mark.parametrize(

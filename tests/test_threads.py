@@ -12,7 +12,7 @@ import pytest
 
 import beamprop as bp
 from beamprop.arrays import fft
-from beamprop.contour import paths
+from beamprop.contour import sums
 
 SLABS = {
     "lossy": bp.Slab(bp.lmmd_cell(), periods=60),
@@ -56,7 +56,7 @@ def test_the_questions_reach_the_fft(monkeypatch):
     """Or what follows would hold by itself."""
     shapes = []
     plan = fft.plan_for
-    for module in (fft, paths):
+    for module in (fft, sums):
         monkeypatch.setattr(module, "plan_for", lambda rows, n: shapes.append((rows, n)) or plan(rows, n))
     for name, ask in _questions().items():
         before = len(shapes)

@@ -9,7 +9,7 @@ import pytest
 
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
-from beamprop.contour import stretches
+from beamprop.contour import search, stretches
 from beamprop.fields import evaluate
 from beamprop.modes import misplaced
 from beamprop.modes.guided import dispersion_of
@@ -116,7 +116,7 @@ def test_a_spectrum_that_is_cut_off_is_met_on_the_axis(chosen, z0, angle):
 def test_the_estimate_knows_what_many_angles_lack():
     """More beams than a contour meets the ends of: the error is estimated no smaller than it is."""
     beam, slab = jagged(-300.0), bp.Slab.uniform(bp.Fluid(2.0 + 0.1j, 200_000.0), 0.07)
-    x, angles = np.linspace(-1, 1, 11), np.linspace(-30, 30, contour_choice.MOST_CUT + 1)
+    x, angles = np.linspace(-1, 1, 11), np.linspace(-30, 30, search.MOST_CUT + 1)
     with pytest.warns(bp.AccuracyWarning):
         ds = bp.field(slab, beam, F, x, [0.2], angle=angles, rtol=1e-6)
     for i in (0, 5):

@@ -26,11 +26,14 @@ class AccuracyWarning(UserWarning):
     """
 
 
-def warn_if_inaccurate(error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|") -> None:
-    """Nothing above rtol leaves a public call without a word."""
+def warn_if_inaccurate(
+    error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|", mostly: str = ""
+) -> None:
+    """Warn of an estimated error above rtol; `mostly` names its largest term where it is known."""
     if error > rtol:
+        term = f", mostly: {mostly}" if mostly else ""
         warnings.warn(
-            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}",
+            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}{term}",
             AccuracyWarning,
             stacklevel=stacklevel,
         )

@@ -8,12 +8,12 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..contour.error import uniform_budget
 from ..fields.question import fill, prepare
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from . import checks
-from .field_question import checked_question, labelled, largest
+from .field_question import checked_question, labelled, warn_of_field
 
 
 def field(
@@ -78,7 +78,9 @@ def field(
     question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
     memory.check_field(question.shape)
     p, errors = np.empty(question.shape, complex), np.empty(question.shape[:2])
+    worst = uniform_budget(1, 0.0)
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
-        errors[i] = fill(prepare(question, i), slice(None), slice(None), p[i])
-    checks.warn_if_inaccurate(largest(errors), question.rtol)
+        budget = fill(prepare(question, i), slice(None), slice(None), p[i])
+        errors[i], worst = budget.total, worst.worse(budget)
+    warn_of_field(worst, question.rtol)
     return labelled(labels, errors, p)

@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from ..contour import paths
+from ..contour import sums
+from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
@@ -59,9 +60,9 @@ def checked_question(
     return question, Labels(axes, slab, beam, boundary, period, rtol)
 
 
-def largest(errors: np.ndarray) -> float:
-    """The largest of some estimates, 0 of those that are not known."""
-    return float(np.max(errors, initial=0.0, where=np.isfinite(errors)))
+def warn_of_field(worst: ErrorBudget, rtol: float) -> None:
+    """Warn of the error of a field's worst beam, with its largest term, if it is above rtol."""
+    checks.warn_if_inaccurate(float(worst.total[0]), rtol, stacklevel=4, mostly=worst.largest)
 
 
 def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:
@@ -91,7 +92,7 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
 def _period(period: Any, x: np.ndarray, beam: Beam, slab: Slab, frequency: np.ndarray) -> float:
     """The period of a periodic boundary; refused where neighbouring beams overlap."""
     if period is None:
-        dx = paths.grid_of(x).step
+        dx = sums.grid_of(x).step
         if not dx:
             raise ValueError("period: expected a length [m] with boundary='periodic' and an uneven x, got None")
         period = dx * x.size

@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
+from ..contour.error import uniform_budget
 from ..fields.question import fill, prepare
 from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from . import checks
-from .field_question import checked_question, labelled, largest
+from .field_question import checked_question, labelled, warn_of_field
 
 #: The largest chunk of a file [bytes].
 CHUNK = 2**24
@@ -93,9 +93,11 @@ def save_field(
         for i, j, k in itertools.product(range(shape[0]), range(0, shape[1], block[0]), range(0, shape[2], block[1]))
     ]
     errors = np.full(shape[:2], np.nan)
+    worst = uniform_budget(1, 0.0)
     kept = [isinstance(p, slice) for p in pick]
 
     def blocks() -> Iterator[tuple[tuple[Any, ...], np.ndarray]]:
+        nonlocal worst
         chosen = -1
         for i, angles, planes in watched(progress, work, "blocks"):
             if i != chosen:
@@ -103,15 +105,15 @@ def save_field(
             # a block at the end may be smaller
             sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), shape[1:3], strict=True)]
             p = np.empty((1, *sizes, shape[3]), complex)
-            found = fill(prepared, planes, angles, p[0])
-            errors[i, angles] = np.fmax(errors[i, angles], found)
+            budget = fill(prepared, planes, angles, p[0])
+            errors[i, angles], worst = np.fmax(errors[i, angles], budget.total), worst.worse(budget)
             where = (slice(i, i + 1), angles, planes, slice(None))
             yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), p[pick]
 
     sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
     chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
     save_blocks(path, "p", sizes, chunks, blocks(), lambda: labelled(labels, errors, None))
-    checks.warn_if_inaccurate(largest(errors), question.rtol)
+    warn_of_field(worst, question.rtol)
     return labelled(labels, errors, None)
 
 

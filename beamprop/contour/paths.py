@@ -1,4 +1,4 @@
-"""Lines of integration over kx, and the sums over them.
+"""Contours of integration over kx: their plans and nodes.
 
 A plain sum over equispaced real kx answers for a periodic array of beams: a lossless slab has guided modes, poles of t on
 the real axis beyond k0, beside the branch points at +-k0, and no window makes the sum converge. In open space the path of
@@ -26,17 +26,11 @@ ds/2 pi. Errors, Z being the length of the path along z:
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
-
-from ..arrays.fft import fast_length as fast_length
-from ..arrays.fft import plan_for
-from ..arrays.matmul import product
-from ..memory import POINTS_AT_A_TIME
 
 EPS = float(np.finfo(float).eps)
 
@@ -44,8 +38,8 @@ EPS = float(np.finfo(float).eps)
 class Contour(NamedTuple):
     """Nodes k and weights w of ``p(x) = sum w h(k) [S(k) e^{ikx} + S(-k) e^{-ikx}]``.
 
-    `step` is the spacing of Re k for an even line that begins at ``first * step``, and 0 for uneven nodes. The first
-    `circles` nodes do not belong to the path: they go around single modes.
+    `step` is the spacing of Re k for an even contour that begins at ``first * step``, and 0 for uneven nodes. The first
+    `circles` nodes do not belong to the contour itself: they go around single modes.
     """
 
     k: np.ndarray
@@ -59,19 +53,19 @@ class Contour(NamedTuple):
 
 
 class Extent(NamedTuple):
-    """What a line must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
+    """What a contour must serve: lengths in m, wavenumbers in rad/m; floats, or arrays (F,) for several frequencies."""
 
     k0: Any  #: wavenumber of the medium in front
     branch: Any  #: smallest |kx| of a branch point, kb
     band: Any  #: largest |Re kx| of the source's spectrum
-    extent: Any  #: X, from the beam's middle to the farthest point asked for
+    extent: Any  #: X, from the beam's middle to the farthest requested point
     source: Any  #: reach of the launch profile about its middle
-    path: Any  #: Z, from the launch plane to the farthest plane asked for
+    path: Any  #: Z, from the launch plane to the farthest requested plane
     low: Any = 0.0  #: smallest |Re kx| of the source's spectrum
 
 
 class StraightPlan(NamedTuple):
-    """The four numbers of an open line; floats, or arrays (F,)."""
+    """The four numbers of a straight contour; floats, or arrays (F,)."""
 
     sigma: Any
     delta: Any
@@ -108,9 +102,9 @@ def plan_straight(reach: Extent, rtol: float, tighten: float = 1.0, noise: float
 
 
 def straight_contour(plan: StraightPlan) -> Contour:
-    """The even line k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
+    """The even contour k = m ds - i sigma, from where chi has vanished on the left to the edge of the band.
 
-    Of arrays (F,), one line a frequency with the same m for all: k and weight are (F, n).
+    Of arrays (F,), one contour a frequency with the same m for all: k and weight are (F, n).
     """
     from scipy.special import erfc
 
@@ -308,226 +302,3 @@ def slow_ends(u: np.ndarray, at_0: bool, at_1: bool) -> tuple[np.ndarray, np.nda
     if at_1:
         return u * (2 - u), 2 * (1 - u)
     return u, np.ones_like(u)
-
-
-# --- sums over a line -------------------------------------------------------------------------------------
-
-
-def amplitudes(contour: Contour, spectrum: Any, centre: float) -> tuple[np.ndarray, np.ndarray]:
-    """w S(k) and w S(-k) about x = centre; `spectrum` is a function of kx about x = 0."""
-    right, left = contour.weight * spectrum(contour.k), contour.weight * spectrum(-contour.k)
-    if centre == 0:
-        return right, left
-    turn = np.exp(1j * contour.k * centre)
-    return right * turn, left / turn
-
-
-#: The most exponentials that are held at a time.
-MOST_PHASES = 4_000_000
-
-
-def direct_sum(contour: Contour, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """p at any x (relative to the centre): one matrix product, (Z, n) by (n, X).
-
-    With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
-    """
-    # plain: h @ (right[:, None] * exp(i k x) + left[:, None] * exp(-i k x))
-    if x.size > POINTS_AT_A_TIME:
-        whole = np.empty((*right.shape[:-1], h.shape[0], x.size), complex)
-        for start in range(0, x.size, POINTS_AT_A_TIME):
-            few = slice(start, start + POINTS_AT_A_TIME)
-            whole[..., few] = direct_sum(contour, h, right, left, x[few])
-        return whole
-    block = max(1, MOST_PHASES // max(1, x.size))
-    if contour.k.size > block:
-        parts = [slice(start, start + block) for start in range(0, contour.k.size, block)]
-        sums = (
-            direct_sum(Contour(contour.k[p], contour.weight[p], contour.step), h[:, p], right[..., p], left[..., p], x)
-            for p in parts
-        )
-        return functools.reduce(np.add, sums)
-    forth, back = _phases(contour.k, x, bool(np.any(left)), contour.step)
-    if right.ndim == 1 and h.shape[0] > 2:
-        both = right[:, None] * forth
-        if back is not None:
-            both += left[:, None] * back
-        return product(h, both)
-    rows = (*right.shape[:-1], h.shape[0])
-    out = product((right[..., None, :] * h).reshape(-1, h.shape[1]), forth)
-    if back is not None:
-        out += product((left[..., None, :] * h).reshape(-1, h.shape[1]), back)
-    return out.reshape(*rows, x.size)
-
-
-class Grid(NamedTuple):
-    """Positions as an even grid and what they are off it, x = start + step j + offsets; step 0 where they are no such grid.
-
-    `offsets` is None where the positions are even to their own rounding: a grid that a user has typed, read from a file
-    or moved is even to some printed digits only.
-    """
-
-    start: float
-    step: float
-    points: int
-    offsets: np.ndarray | None
-
-    @property
-    def even(self) -> np.ndarray:
-        """The even grid's own positions."""
-        return self.start + self.step * np.arange(self.points)
-
-    @property
-    def unevenness(self) -> float:
-        """The largest offset [m]."""
-        return 0.0 if self.offsets is None else float(np.max(np.abs(self.offsets)))
-
-
-#: From what share of the step on an offset makes a grid uneven.
-UNEVEN = 1e-2
-
-
-def grid_of(x: np.ndarray) -> Grid:
-    """The even grid from the first to the last position, and the offsets from it."""
-    if x.size < 2 or not x[-1] > x[0]:
-        return Grid(float(x[0]), 0.0, x.size, None)
-    grid = Grid(float(x[0]), float((x[-1] - x[0]) / (x.size - 1)), x.size, None)
-    offsets = x - grid.even
-    largest = float(np.max(np.abs(offsets)))
-    if largest > UNEVEN * grid.step:
-        return grid._replace(step=0.0)
-    return grid if largest <= 4 * EPS * float(max(abs(x[0]), abs(x[-1]))) else grid._replace(offsets=offsets)
-
-
-#: On even grids of at least this many points exponentials are products of two small tables, this many apart.
-TABLE, STEP = 64, 32
-
-
-def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
-
-    `dk` is the spacing of even nodes k, if they are.
-    """
-    # plain: forth = exp(i k x), back = exp(-i k x)
-    ik = 1j * k[:, None]
-    grid = grid_of(x) if x.size >= TABLE else None
-    if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
-        if dk and k.size >= TABLE:
-            coarse, fine = np.exp(ik[::STEP] * x), np.exp(1j * dk * np.arange(STEP)[:, None] * x)
-            forth = _inner(coarse, fine, k.size)
-            return forth, _inner(1 / coarse, 1 / fine, k.size) if both else None
-        forth = np.exp(ik * x)
-        return forth, 1 / forth if both else None
-    starts = grid.start + grid.step * np.arange(0, x.size, STEP)
-    coarse, fine = np.exp(ik * starts), np.exp(ik * (grid.step * np.arange(STEP)))
-    forth = _outer(coarse, fine, x.size)
-    back = _outer(1 / coarse, 1 / fine, x.size) if both else None
-    if grid.offsets is not None:  # exp(+-i k offset) to first order
-        turn = ik * grid.offsets
-        if back is not None:
-            back -= back * turn
-        forth += forth * turn
-    return forth, back
-
-
-def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
-    out = coarse[:, :, None] * fine[:, None, :]
-    return out.reshape(coarse.shape[0], -1)[:, :count]
-
-
-def _inner(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
-    out = coarse[:, None, :] * fine[None, :, :]
-    return out.reshape(-1, coarse.shape[1])[:count]
-
-
-def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
-    """h (rows, count) times each amplitude (2, rows or 1, count), into bins first, first + 1, ... modulo n of out (2, rows, n).
-
-    Exact aliasing, for the output has n points a window. Bins beside them are left as they are.
-    """
-    # plain: out = 0; out[..., bins % n] += h * amplitude
-    n, count, start = out.shape[2], h.shape[1], 0
-    while start < count:
-        here = (first + start) % n
-        part = slice(start, min(count, start + n - here, n if start < n else count))
-        into = out[..., here : here + part.stop - part.start]
-        if start < n:
-            np.multiply(h[:, part], amplitude[..., part], out=into)
-        else:
-            into += h[:, part] * amplitude[..., part]
-        start = part.stop
-
-
-def fft_sum(
-    contour: Contour,
-    h: np.ndarray,
-    right: np.ndarray,
-    left: np.ndarray,
-    x: np.ndarray,
-    n: int,
-    out: np.ndarray | None = None,
-) -> np.ndarray:
-    """p at even x = x_0 + j dx (relative to the centre), where line.step = 2 pi/(n dx): two FFTs a plane.
-
-    Planes go through in blocks that stay in the cache. With amplitudes (B, n) of B beams the answer is (B, Z, X);
-    `out`, of its shape and contiguous, is filled if given.
-    """
-    shape = (*right.shape[:-1], h.shape[0], x.size)
-    turn = np.exp(1j * (contour.first + np.arange(contour.k.size)) * contour.step * x[0])
-    amplitude = np.stack([np.atleast_2d(right) * turn, np.atleast_2d(left) / turn])  # (2, B, n)
-    grow = np.exp(contour.sigma * x)
-    scale = np.repeat([grow, 1 / grow], 2, axis=1)  # for complex numbers seen as pairs of real ones
-    leftward = bool(np.any(left))
-    planes, total = h.shape[0], amplitude.shape[1] * h.shape[0]
-    flat = np.empty((total, x.size), complex) if out is None else out.reshape(-1, x.size)
-    real = flat.view(float)
-    rows = max(1, min(total, 2**14 // n))
-    plan = plan_for(rows, n)
-    plan.source[...] = 0
-    result = plan.result[..., : x.size].view(float)
-    # plain: flat = grow ifft(right h) + fft(left h)/grow
-    for start in range(0, total, rows):
-        stop = min(start + rows, total)
-        if amplitude.shape[1] == 1:
-            part, weights = h[start:stop], amplitude
-        else:
-            beam, plane = np.divmod(np.arange(start, stop), planes)
-            part, weights = h[plane], amplitude[:, beam]
-        _fold(part, weights, contour.first, plan.source[:, : stop - start])
-        plan.run[0]()
-        if leftward:
-            plan.run[1]()
-            np.einsum("srx,sx->rx", result[:, : stop - start], scale, out=real[start:stop])
-        else:
-            np.multiply(result[0, : stop - start], scale[0], out=real[start:stop])
-    return flat.reshape(shape)
-
-
-#: Numbers in a block of slopes, by which fields are moved from an even grid to the positions asked for.
-SLOPES = 2**20
-
-
-def grid_sum(
-    contour: Contour,
-    h: np.ndarray,
-    right: np.ndarray,
-    left: np.ndarray,
-    grid: Grid,
-    n: int,
-    out: np.ndarray | None = None,
-) -> np.ndarray:
-    """`fft_sum` at the positions that were asked for: p + offset dp/dx where they lie off the even grid.
-
-    What is left out is (k offset)^2/2 of a plane wave.
-    """
-    p = fft_sum(contour, h, right, left, grid.even, n, out)
-    if grid.offsets is None:
-        return p
-    ik = 1j * contour.k
-    beams = right.size // right.shape[-1]
-    rows = max(1, SLOPES // (grid.points * beams))
-    for start in range(0, h.shape[0], rows):
-        part = slice(start, start + rows)
-        slope = fft_sum(contour, h[part], right * ik, -left * ik, grid.even, n)
-        slope *= grid.offsets
-        p[..., part, :] += slope
-    return p

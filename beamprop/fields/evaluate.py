@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import exponentials
-from ..contour import error_estimate, paths
-from ..contour.choose import Quadrature, fft_is_cheaper
+from ..contour import sums
+from ..contour.error import DARK
+from ..contour.quadrature import Quadrature
+from ..contour.straight import fft_is_cheaper
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, single
@@ -24,7 +26,7 @@ from .low_rank import cross, mixing
 def evaluator(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """p at any x on the one plane of h: plane waves are solved and their amplitudes formed once, whatever is asked then."""
     right, left = quadrature.amplitudes_of(s.k0, single(beam))
-    return lambda at: np.asarray(paths.direct_sum(quadrature.contour, h, right[0], left[0], at - beam.centre))[0]
+    return lambda at: np.asarray(sums.direct_sum(quadrature.contour, h, right[0], left[0], at - beam.centre))[0]
 
 
 def beam_sum(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -48,17 +50,17 @@ def fill(
     fast = n and fft_is_cheaper(n, contour.k.size, x.size)
     if sources.weights is not None:
         summed = (
-            paths.grid_sum(contour, h, right, left, paths.grid_of(x), n)
+            sums.grid_sum(contour, h, right, left, sums.grid_of(x), n)
             if fast
-            else paths.direct_sum(contour, h, right, left, x)
+            else sums.direct_sum(contour, h, right, left, x)
         )
         _check_finite(summed)
         sources.interpolated_to(summed, out)
         return
     if fast:
-        grid = paths.grid_of(x)
+        grid = sums.grid_of(x)
         for a, b, into in zip(right, left, out, strict=True):
-            paths.grid_sum(contour, h, a, b, grid, n, into)
+            sums.grid_sum(contour, h, a, b, grid, n, into)
     elif h.shape[0] <= FEW_PLANES and x.size >= exponentials.MANY and (step := exponentials.even_step(x)):
         for a, b, into in zip(right, left, out, strict=True):
             into[...] = exponentials.over_waves(contour.k, a * h, float(x[0]), step, x.size)
@@ -66,9 +68,9 @@ def fill(
                 into += exponentials.over_waves(-contour.k, b * h, float(x[0]), step, x.size)
     elif len(right) == 1 or h.shape[0] > 64:
         for a, b, into in zip(right, left, out, strict=True):
-            into[...] = paths.direct_sum(contour, h, a, b, x)
+            into[...] = sums.direct_sum(contour, h, a, b, x)
     else:
-        out[...] = paths.direct_sum(contour, h, right, left, x)
+        out[...] = sums.direct_sum(contour, h, right, left, x)
     _check_finite(out)
 
 
@@ -178,7 +180,7 @@ def _fill_low_rank(
     with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode
         weighted = h[: searched.size] * strength
         size = np.linalg.norm(weighted, axis=1)
-    if not np.all((size > error_estimate.DARK) & np.isfinite(size)):
+    if not np.all((size > DARK) & np.isfinite(size)):
         return None
     growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(x0)))
     weighted /= size[:, None]
@@ -189,8 +191,8 @@ def _fill_low_rank(
     fill(s, sources, quadrature, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
     ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
     scale = np.max(np.abs(theirs), axis=2)
-    scale = np.where(scale > error_estimate.DARK, scale, np.inf)
-    room = rtol - float(np.max(quadrature.error))  # what the line has left of rtol, if it keeps it
+    scale = np.where(scale > DARK, scale, np.inf)
+    room = rtol - quadrature.worst  # what the line has left of rtol, if it keeps it
     allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
     for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed

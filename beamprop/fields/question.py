@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..contour import choose
+from ..contour.error import ErrorBudget, uniform_budget
+from ..contour.quadrature import Quadrature
 from ..media.structures import Slab
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab, sample
@@ -41,7 +43,7 @@ class Prepared(NamedTuple):
     question: FieldQuestion
     slab: SampledSlab
     beams: AngleInterpolation
-    quadrature: choose.Quadrature
+    quadrature: Quadrature
 
 
 def prepare(question: FieldQuestion, i: int) -> Prepared:
@@ -55,14 +57,16 @@ def prepare(question: FieldQuestion, i: int) -> Prepared:
     return Prepared(question, s, beams, quadrature)
 
 
-def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> np.ndarray:
-    """p at some planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
+def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
+    """p at planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
 
     Returns
     -------
-    (A,) estimated errors of an open field over the largest |p| of a plane; nan with a period.
+    Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
     """
     question, s, beams, quadrature = prepared
-    transfer, some_beams = transfer_function.through(s, question.source.z0), beams.taken(angles)
-    added = evaluate.fill_map(s, some_beams, quadrature, transfer, question.z[planes], question.x, out, question.rtol)
-    return quadrature.error[angles] + added if question.period is None else np.full(added.shape, np.nan)
+    transfer, taken = transfer_function.through(s, question.source.z0), beams.taken(angles)
+    added = evaluate.fill_map(s, taken, quadrature, transfer, question.z[planes], question.x, out, question.rtol)
+    if question.period is not None:
+        return uniform_budget(added.size, np.nan)
+    return quadrature.budget.taken(angles)._replace(low_rank=added)

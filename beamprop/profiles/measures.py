@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import simpson
 
-from ..contour import choose, error_estimate
+from ..contour import choose
+from ..contour.error import SHIFT
 from ..fields import evaluate
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
@@ -185,4 +186,4 @@ def _power(s: SampledSlab, beam: Beam, face: Face, behind: bool, rtol: float) ->
         return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
 
     count = 200 + 2 * k * (beam.reach(1e-6) + s.thickness - beam.z0)
-    return power.radiated(density, lambda kx: density(kx, error_estimate.SHIFT), k, s.real_branches, count, rtol)
+    return power.radiated(density, lambda kx: density(kx, SHIFT), k, s.real_branches, count, rtol)

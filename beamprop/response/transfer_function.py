@@ -99,22 +99,3 @@ def _without_slab(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
     # beyond 1e39 m the phase overflows; no contour is flat enough for such a distance, and its plane waves are refused
     with np.errstate(over="ignore", invalid="ignore"):
         return propagation(s.kz_before(kx)[0], z[:, None])
-
-
-#: Below this a ratio of two numbers may overflow.
-FAINT = 1e-250
-
-
-def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
-    """How far plane waves are carried along x, by stationary phase: the least and the most of the strong ones along the last axis.
-
-    A plane wave of amplitude h lands at -d(arg h)/dkx; `low` and `high` are h a `step` below and above each kx.
-    """
-    twice = low + high
-    size = np.abs(twice)
-    strong = (size > 0.1 * size.max(axis=-1, keepdims=True)) & (size > FAINT)
-    slope = np.imag((high - low) / np.where(strong, step * twice, 1.0))
-    shift = np.where(strong, -slope, 0.0)
-    least, most = shift.min(-1, where=strong, initial=np.inf), shift.max(-1, where=strong, initial=-np.inf)
-    least, most = (np.where(np.isfinite(v), v, 0.0) for v in (least, most))
-    return least, most

@@ -14,7 +14,7 @@ from run import BEAM, FREQUENCY, SLAB, grids
 from timing import amount, measure
 
 import beamprop as bp
-from beamprop.contour import choose
+from beamprop.contour import straight
 from beamprop.fields import evaluate, question
 from beamprop.response import cell, interior
 from beamprop.sources import angles as source_angles
@@ -53,7 +53,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "of it: poles on the wrong side": ("modes/misplaced.py", "misplaced"),
-            "of it: two contours compared": ("contour/error_estimate.py", "difference"),
+            "of it: two contours compared": ("contour/error.py", "difference"),
             "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
             "of it: cross approximation": ("fields/low_rank.py", "cross"),
             "of it: its planes summed": ("fields/evaluate.py", "fill"),
@@ -65,7 +65,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         angles,
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
-            "fields at the nodes": ("contour/paths.py", "fft_sum"),
+            "fields at the nodes": ("contour/sums.py", "fft_sum"),
             "angle interpolation": ("sources/angles.py", "interpolated_to"),
             "labels, provenance": ("api/field_question.py", "labelled"),
         },
@@ -73,7 +73,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "`beam_width`, 101 frequencies": (
         widths,
         {
-            "windows, by stationary phase": ("profiles/sections.py", "landing"),
+            "windows, by stationary phase": ("contour/stationary_phase.py", "landing"),
             "poles on the wrong side": ("profiles/sections.py", "_backward"),
             "contours and their response": ("profiles/sections.py", "_both_modes"),
             "samples, peak, edges": ("profiles/sections.py", "_measured"),
@@ -118,8 +118,8 @@ class Step(NamedTuple):
 STEPS = [
     Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
     Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", 10**9),
-    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
-    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
+    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "interpolate_angles", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
+    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), straight, "fft_is_cheaper", lambda *_: False),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
     Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
     Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),

@@ -1,0 +1,153 @@
+"""Where two contours are compared: positions and planes that stand for all, dark planes among them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..response.transfer_function import TransferFunction
+from ..sources.angles import AngleInterpolation
+from ..sources.base import Beam
+from . import near_normal
+
+
+class Checks(NamedTuple):
+    """Where two contours are compared."""
+
+    sources: AngleInterpolation
+    k0: float
+    transfer: TransferFunction
+    x: np.ndarray
+    z: np.ndarray
+    guided: bool  #: whether the transfer function has guided modes (none without a slab)
+    peaks_outside: np.ndarray  #: |p| where each requested beam lands, if that is elsewhere, else 0; (A, Z)
+    dark: (
+        np.ndarray | None
+    )  #: whether a plane is dark to rounding for each requested beam, (A, Z); None until it matters
+
+
+def check_points(
+    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, many: bool = False
+) -> tuple[np.ndarray, np.ndarray]:
+    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach.
+
+    Half as many positions for `many` mixed beams, each of which is looked at through the others too.
+    """
+    picked, around = (17, 19) if many else (31, 41)
+    zs = np.sort(z)
+    pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
+    near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
+    xs = np.sort(x)
+    xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
+    own = centre + source * np.linspace(-1, 1, around)
+    ends = _towards_ends(x, xs, source)
+    even = xs[::2] if ends.size else xs
+    return np.concatenate([even, own, ends]), np.unique([*pick, *near])
+
+
+def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
+    """Positions that lie ever closer towards both ends, down to the source's size, where those picked are further apart.
+
+    What a finite step in kx adds are images of the beam, about as wide as the source, that come in from both ends.
+    """
+    apart = float(np.max(np.diff(picked), initial=0.0))
+    if apart <= 2 * source:
+        return np.empty(0)
+    steps = np.geomspace(source, apart, 2 + math.ceil(2 * math.log2(apart / source)))
+    wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
+    order = np.sort(x)
+    return order[np.clip(np.searchsorted(order, wanted), 0, x.size - 1)]
+
+
+# --- dark planes ------------------------------------------------------------------------------------------
+
+#: Planes that are compared besides: so many of the darkest for each of three beams, if they are darker by this than others within
+#: half a wavelength in front and behind: a standing wave of two waves of ratio 0.54 or nearer to 1 has such nodes.
+DARKEST, DARKER = 4, 0.3
+#: How far beside a plane it is looked whether it is brighter there, in wavelengths in front of the slab; and how much darker a
+#: plane may be before what is left on it is rounding: 1e-11 of what stands a thousandth of a wavelength beside it.
+BESIDE, LIGHTLESS = 1e-3, 1e-11
+
+
+def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
+    """Planes at nodes of standing waves: errors are over the largest |p| of each plane, so that these ask for the most.
+
+    By the strong plane waves of some of the beams: what is dark for all of them is dark for the beam (Parseval).
+    """
+    order = np.sort(z)
+    darkest: list[float] = []
+    chosen = sources.spread(3)
+    for angle in sources.requested[chosen]:
+        darker = _darkness(_strengths(sources.at(float(angle)), k0, transfer, order), order, np.pi / k0)
+        picked: list[float] = []
+        for i in np.argsort(darker, kind="stable"):
+            if darker[i] > DARKER or len(picked) == DARKEST:
+                break
+            if all(abs(order[i] - plane) > 0.1 / k0 for plane in picked):
+                picked.append(float(order[i]))
+        darkest += picked
+    return np.unique(darkest)
+
+
+def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
+    """Sizes on sorted planes over the largest within a window in front or behind, whichever is less: small at a node only."""
+    bins = np.floor((z - z[0]) / (window / 2)).astype(int)
+    bins = np.unique(bins, return_inverse=True)[1] if bins[-1] > 4 * z.size else bins
+    largest = np.zeros(bins[-1] + 5)
+    np.maximum.at(largest, bins + 2, size)
+    padded = np.concatenate([size[:1], size, size[-1:]])
+    front = np.max([largest[bins], largest[bins + 1], padded[:-2]], axis=0)
+    behind = np.max([largest[bins + 3], largest[bins + 4], padded[2:]], axis=0)
+    beside = np.minimum(front, behind)
+    return np.divide(size, beside, out=np.ones(size.shape), where=beside > size)
+
+
+def with_dark_planes(checks: Checks) -> Checks:
+    """Tell which planes hold no more than rounding beside what stands next to them: p on a perfect wall."""
+    sources, k0, transfer, z = checks.sources, checks.k0, checks.transfer, checks.z
+    step = BESIDE * 2 * np.pi / k0
+    near = np.concatenate([z, np.maximum(z - step, sources.beam.z0), z + step])
+    chosen = sources.spread(9)
+    dark = []
+    for angle in sources.requested[chosen]:
+        here, front, behind = np.split(_strengths(sources.at(float(angle)), k0, transfer, near), 3)
+        dark.append(here < LIGHTLESS * np.where(behind > 0, np.minimum(front, behind), front))
+    return checks._replace(dark=interpolated(sources.requested, sources.requested[chosen], np.array(dark)))
+
+
+def _strengths(beam: Beam, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
+    """The largest |S h| of a beam's strong plane waves on each plane, (Z,)."""
+    k = strong_waves(beam, k0)
+    # even in kx; through a layer of density 0 passes kx = 0 alone
+    h = np.abs(transfer(np.maximum(np.abs(k), near_normal.NEAREST * k0) + 0j, z))
+    return np.max(np.nan_to_num(h * np.abs(beam.spectrum(k, k0))), axis=1)
+
+
+def strong_waves(beam: Beam, k0: float) -> np.ndarray:
+    """A few strong plane waves of a beam that propagate, or nearly."""
+    lo, hi = beam.band(k0, 0.3)
+    if not beam.entire:  # the band of a rotated beam is all that propagates: its strong part is that of its waist
+        k = np.linspace(-0.999, 0.999, 4001) * k0
+        size = np.abs(beam.spectrum(k, k0))
+        lo, hi = k[np.flatnonzero(size >= 0.3 * size.max())[[0, -1]]]
+    return np.clip(np.linspace(lo, hi, 9), -0.98 * k0, 0.98 * k0)
+
+
+def _neighbours(at: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Indices of those of `known`, increasing, that lie above and below each of `at`."""
+    above = np.clip(np.searchsorted(known, at), 0, known.size - 1)
+    return above, np.where(known[above] == at, above, np.maximum(above - 1, 0))
+
+
+def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values (P, ...) at `known`, increasing, brought to `at`: the less of both neighbours'."""
+    above, below = _neighbours(at, known)
+    return np.minimum(values[above], values[below])
+
+
+def worse_neighbours(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """The index, for each of `at`, of the neighbour among `known` with the larger of values (P,)."""
+    above, below = _neighbours(at, known)
+    return np.where(values[above] >= values[below], above, below)

@@ -1,0 +1,274 @@
+"""The error of a field on a contour, estimated by a second contour that shares no number with the first.
+
+Their difference at a few planes and positions is the error of the coarser one. What both would miss is added: the end of
+the band, and a spectrum that ends inside a contour. The second contour's response is taken at kx and w moved in their last bits,
+so that rounding which both share shows too. Errors are over the largest |p| of the plane, which may lie far from the
+requested positions: a beam is looked for where it lands, too.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..memory import check_contour
+from ..sources.angles import AngleInterpolation
+from . import sums
+from .check_points import Checks, with_dark_planes, worse_neighbours
+from .paths import EPS, Contour
+from .sums import beam_amplitudes
+
+#: How far kx and w are moved, relatively: the rounding of a response shows in the change from one kx to another that is a few units
+#: of the last place away.
+SHIFT = 4 * EPS
+#: Planes on which the largest |p| is below this are dark: products of what is left there with amplitudes underflow (2e-308).
+DARK = 1e-290
+#: What stands for the error at all positions and planes, over the largest difference at those that are compared.
+MARGIN = 1.5
+
+
+class ErrorBudget(NamedTuple):
+    """The estimated error of a field by its terms, each over the largest |p| of the plane on which their sum is largest.
+
+    Arrays (A,), by requested beam.
+    """
+
+    difference: np.ndarray  #: of the fields on two contours
+    samples_rounding: np.ndarray  #: of a sampled profile, shared by both contours
+    cut_spectrum: np.ndarray  #: what is missing where a spectrum ends inside the contour
+    angle_interpolation: np.ndarray  #: of the beams that are interpolated, seen on some that are summed
+    band_end: np.ndarray  #: what lies beyond the end of the contour
+    long_phases: np.ndarray  #: rounding of k0 and of lengths, shared by both contours
+    low_rank: np.ndarray  #: what planes gain that are combinations of others
+
+    @property
+    def total(self) -> np.ndarray:
+        """The sum of all terms, (A,)."""
+        return functools.reduce(np.add, self)
+
+    @property
+    def worst(self) -> ErrorBudget:
+        """That of the beam with the largest total, (1,); a total that is nan is not known."""
+        return self.taken([int(np.argmax(np.where(np.isnan(self.total), -np.inf, self.total)))])
+
+    @property
+    def largest(self) -> str:
+        """The largest term of the beam with the largest total, in words."""
+        return TERMS[self._fields[int(np.argmax([term[0] for term in self.worst]))]]
+
+    def taken(self, beams: Any) -> ErrorBudget:
+        """The budget of the beams of an index."""
+        return ErrorBudget(*(term[beams] for term in self))
+
+    def worse(self, second: ErrorBudget) -> ErrorBudget:
+        """That of the beam with the largest total in both, (1,)."""
+        return ErrorBudget(*(np.concatenate(pair) for pair in zip(self, second, strict=True))).worst
+
+
+#: The terms in the words of a warning.
+TERMS = {
+    "difference": "the difference between two contours",
+    "samples_rounding": "the rounding of a profile's samples",
+    "cut_spectrum": "a spectrum that is cut off",
+    "angle_interpolation": "the interpolation of angles",
+    "band_end": "the end of the band of plane waves",
+    "long_phases": "the rounding of long phases",
+    "low_rank": "the low rank of many planes",
+}
+
+
+def uniform_budget(beams: int, value: float) -> ErrorBudget:
+    """A budget with the same value of every term."""
+    return ErrorBudget(*np.full((len(ErrorBudget._fields), beams), value))
+
+
+class Sampled(NamedTuple):
+    """A contour, and its response at the planes that are compared."""
+
+    contour: Contour
+    h: np.ndarray
+    amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
+
+
+def sampled(checks: Checks, contour: Contour, moved: bool) -> Sampled:
+    """The response at the planes that are compared, `moved` in its last bits or not."""
+    check_contour(contour.k.size, checks.sources.angles.size, checks.z.size)
+    h = checks.transfer(contour.k, checks.z, SHIFT if moved else 0.0)
+    return Sampled(contour, h, beam_amplitudes(checks.k0, checks.sources, contour))
+
+
+class Estimate(NamedTuple):
+    """The estimated error of the first of two contours."""
+
+    budget: ErrorBudget
+    edge: float  #: the most that lies beyond the end of either, over the largest |p| of its plane
+
+    @property
+    def worst(self) -> float:
+        """The largest total of all beams."""
+        return float(self.budget.total.max())
+
+
+class Compared(NamedTuple):
+    """Two contours, the estimated error of the first, and the checks by which it was made."""
+
+    first: Sampled
+    second: Sampled
+    estimate: Estimate
+    checks: Checks
+
+
+def compare(checks: Checks, contours: tuple[Contour, Contour], rtol: float) -> Compared:
+    """Estimate the error of the first of two contours; planes dark to rounding are told apart where it is above `rtol`."""
+    first, second = sampled(checks, contours[0], False), sampled(checks, contours[1], True)
+    found = estimate(checks, first, second)
+    if found.worst > rtol and checks.dark is None:
+        checks = with_dark_planes(checks)
+        found = estimate(checks, first, second)
+    return Compared(first, second, found, checks)
+
+
+#: Of more requested beams than this so many are compared, spread evenly over the angles; those between take the worse neighbour's error.
+ESTIMATED = 64
+
+
+def estimate(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
+    """Estimated error of the first contour over the largest |p| of each plane, on the worst plane of each requested beam."""
+    requested = checks.sources.requested
+    if checks.sources.weights is None or requested.size <= ESTIMATED:
+        return _on_worst_planes(terms_by_plane(checks, first, second))
+    chosen = checks.sources.spread(ESTIMATED)
+    dark = None if checks.dark is None else checks.dark[chosen]
+    part = checks._replace(sources=checks.sources.taken(chosen), peaks_outside=checks.peaks_outside[chosen], dark=dark)
+    found = _on_worst_planes(terms_by_plane(part, first, second))
+    return found._replace(budget=found.budget.taken(worse_neighbours(requested, requested[chosen], found.budget.total)))
+
+
+def _on_worst_planes(by_plane: Estimate) -> Estimate:
+    """Terms (A, Z) on the plane where their sum is largest, (A,)."""
+    worst = np.argmax(by_plane.budget.total, axis=1)
+    return by_plane._replace(budget=by_plane.budget.taken((np.arange(worst.size), worst)))
+
+
+def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
+    """The terms of the error of the first contour by requested beam and plane, (A, Z)."""
+    sources = checks.sources
+    x = checks.x - sources.beam.centre
+    extremes = _extreme_beams(sources)
+    summed, themselves = _summed(checks, first, extremes, x)
+    a = sources.interpolated_to(summed)
+    b = sources.interpolated_to(np.asarray(sums.direct_sum(second.contour, second.h, *second.amplitudes, x)))
+    largest = _largest(checks, a, b)
+    seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
+    scale = np.where(seen, largest, 1.0)
+    zero = np.zeros(largest.shape)
+    with np.errstate(invalid="ignore", over="ignore"):
+        apart = np.max(np.abs(a - b), axis=2)
+        cut = interpolation = end = other_end = zero
+        if sources.beam.entire:
+            cut = _of_requested(sources, _cut_off(checks, first, float(np.max(np.abs(x)))))
+            end, other_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
+        if extremes.size:
+            interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
+        source = _source_rounding(checks.k0, sources, first)
+        apart, source, cut, interpolation = (_weighed(v / scale, seen) for v in (apart, source, cut, interpolation))
+        end, other_end = (np.where(seen, v / scale, 0.0) for v in (end, other_end))
+    # both contours share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase
+    way = float(np.max(np.abs(x)) + np.max(checks.z) - sources.beam.z0)
+    phases = np.full(largest.shape, EPS * (4 + checks.k0 * way))
+    budget = ErrorBudget(apart, source, cut, interpolation, end, phases, low_rank=zero)
+    return Estimate(budget, float(np.max(np.maximum(end, other_end))))
+
+
+def _weighed(term: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """A term with its margin, 0 on dark planes; what is not finite is infinite."""
+    return np.where(seen, MARGIN * np.nan_to_num(term, nan=np.inf, posinf=np.inf), 0.0)
+
+
+def _largest(checks: Checks, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """The largest |p| of each plane (A, Z) by two fields (A, Z, X), where the beam lands too."""
+    return np.maximum(np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2)), checks.peaks_outside)
+
+
+def _extreme_beams(sources: AngleInterpolation) -> np.ndarray:
+    """Indices of interpolated beams that are summed by themselves too: the extremes, where interpolation errs most, and between."""
+    return np.empty(0, int) if sources.weights is None else sources.spread(5)
+
+
+def _summed(checks: Checks, contour: Sampled, extremes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fields (B, Z, X) of the beams that are summed, and of the `extremes` by themselves, in one product."""
+    sources, (right, left) = checks.sources, contour.amplitudes
+    if extremes.size:
+        beams = AngleInterpolation(sources.beam, sources.requested[extremes])
+        pairs = zip((right, left), beam_amplitudes(checks.k0, beams, contour.contour), strict=True)
+        right, left = (np.concatenate(pair) for pair in pairs)
+    p = np.asarray(sums.direct_sum(contour.contour, contour.h, right, left, x))
+    return p[: sources.angles.size], p[sources.angles.size :]
+
+
+def _of_requested(sources: AngleInterpolation, bound: np.ndarray) -> np.ndarray:
+    """A bound for each requested beam (A, Z), from those of the beams that are summed (B, Z)."""
+    return bound if sources.weights is None else np.abs(sources.weights) @ bound
+
+
+def _source_rounding(k0: float, sources: AngleInterpolation, first: Sampled) -> np.ndarray:
+    """What rounding of a sampled source brings to each plane, on both contours alike; (Z,).
+
+    The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
+    (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
+    """
+    h, weight, bounds = np.abs(first.h), 2 * np.abs(first.contour.weight), [np.zeros(first.h.shape[0])]
+    for angle in {float(sources.angles.min()), float(sources.angles.max())}:
+        rounding: Any = getattr(sources.at(angle), "spectral_rounding", None)
+        for k in (first.contour.k, -first.contour.k) if rounding else ():
+            coherent, white = rounding(k, k0)
+            with np.errstate(over="ignore", invalid="ignore"):
+                bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
+    return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # the largest of many positions
+
+
+def _beyond(end: Sampled) -> np.ndarray:
+    """Size of what lies beyond the end of a contour: its last two tenths, continued geometrically; (B, Z)."""
+    right, left = end.amplitudes
+    if end.contour.closed:
+        return np.zeros((right.shape[0], end.h.shape[0]))
+    n, circles = end.contour.k.size, end.contour.circles
+    tenth = max(1, (n - circles) // 10)
+    tail = slice(max(circles, n - 2 * tenth), n)
+    size = (np.abs(right[:, tail]) + np.abs(left[:, tail]))[:, None] * np.abs(end.h[:, tail])
+    last, before = size[..., -tenth:].sum(axis=-1), size[..., :-tenth].sum(axis=-1)
+    ratio = np.clip(last / np.maximum(before, 1e-300), 0.0, 0.95)
+    return 2 * last * ratio / (1 - ratio)
+
+
+def _cut_off(checks: Checks, first: Sampled, extent: float) -> np.ndarray:
+    """Size of what is missing where a spectrum ends inside a contour (samples too coarse for their profile); (B, Z).
+
+    |w S h e^{ikx}| at the last node or above it on the real axis, where the cut is defined, times the nodes that would fit between
+    them: on a long way along z waves below the axis have died when those on the axis have not.
+    """
+    contour, sources, k0 = first.contour, checks.sources, checks.k0
+    missing = np.zeros((first.amplitudes[0].shape[0], first.h.shape[0]))
+    for side, amplitude in zip((1, -1), first.amplitudes, strict=True):
+        beyond = sources.spectra(side * _after(contour, contour.k.size - 1), k0)
+        for i in np.flatnonzero((amplitude[:, -1] == 0) | ~beyond.any(axis=1)):
+            used = np.flatnonzero(amplitude[i])
+            if used.size < 2:
+                continue
+            j = int(used[-1])
+            if sources.at(float(sources.angles[i])).spectrum(side * _after(contour, j), k0).any():
+                continue
+            step, depth = max(abs(contour.k[j] - contour.k[j - 1]), 1e-300), abs(contour.k[j].imag)
+            below = np.abs(first.h[:, j]) * math.exp(min(depth * extent, 100))
+            on_axis = np.nan_to_num(np.abs(checks.transfer(np.array([contour.k[j].real + 0j]), checks.z)[:, 0]))
+            missing[i] += np.abs(amplitude[i, j]) * np.maximum(below, on_axis) * (1 + depth / step)
+    return missing
+
+
+def _after(contour: Contour, j: int) -> np.ndarray:
+    """Two places beyond node j."""
+    step = max(abs(contour.k[j] - contour.k[j - 1]), 1e-300)
+    return contour.k[j] + 2 * step * np.arange(1, 3)

@@ -1,0 +1,68 @@
+"""Contours for sources of propagating waves alone, whose spectra end at k0."""
+
+from __future__ import annotations
+
+import math
+
+from .. import memory
+from ..modes import misplaced
+from ..response.sampled_slab import SampledSlab
+from ..sources.base import Beam
+from . import error, paths
+from .check_points import Checks
+from .paths import Extent
+from .quadrature import Quadrature
+from .search import MOST_PLANE_WAVES
+
+#: How far the contour of propagating waves dips below the axis, over k0: about `paths.SLOPE`, the depth of bent contours.
+DEEPEST_DIP = 0.3
+
+
+def _dip(s: SampledSlab, reach: Extent, rtol: float, sharp: float) -> float:
+    """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
+    growth = min(paths.DEEPEST, max(0.0, math.log(rtol / (100 * paths.EPS))))
+    dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
+    if not math.isfinite(sharp):
+        return 0.0
+    found = misplaced.misplaced(s, 1.05 * dip * reach.k0, (1 - 1e-6) * reach.k0, 1e-6 * reach.k0)
+    return dip if not found.poles else 0.0
+
+
+#: The most plane waves of a rotated beam whose width is asked for: their error is estimated within some
+#: seconds, and some hundred positions are summed then.
+MOST_OF_WIDTHS = 600_000
+
+
+def _rays(k0: float, length: float) -> int:
+    """Gauss nodes over the propagating waves by which a field is tried first, `length` being the way along x and z."""
+    return int(60 + 0.6 * k0 * length)
+
+
+def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
+    """Refuse the width of a beam of propagating waves alone whose phases turn too often over its way."""
+    if not beam.entire and (waves := 1.4 * _rays(s.k0, path + extent)) > MOST_OF_WIDTHS:
+        raise ValueError(
+            f"z0: expected a way that beams of propagating waves alone go with at most {MOST_OF_WIDTHS} plane waves, got {path:.3g} m of "
+            f"it, which take {waves:.2g}: take a launch plane and a slab's far face that are nearer, or form='launch', which takes fewer"
+        )
+
+
+#: How often the number of nodes is tried, each 1.8 times the one before: 1.8^5, so up to 19-fold.
+ROUNDS = 6
+
+
+def propagating_quadrature(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, sharp: float) -> Quadrature:
+    """Gauss nodes over the propagating waves, raised until two numbers of nodes, on contours that dip differently, agree."""
+    count = _rays(reach.k0, reach.extent + reach.path)
+    dip = _dip(s, reach, rtol, sharp) if checks.guided else 0.0
+    for _ in range(ROUNDS):
+        memory.check_contour(1.4 * count, checks.sources.angles.size, checks.z.size)
+        coarse, fine = (
+            paths.propagating_contour(s.k0, s.real_branches, int(more * count), share * dip, share * sharp)
+            for more, share in ((1.0, 0.7), (1.4, 1.0))
+        )
+        _, second, found, checks = error.compare(checks, (coarse, fine), rtol)
+        if found.worst <= rtol or count > MOST_PLANE_WAVES // 4:
+            break
+        count = int(1.8 * count)
+    return Quadrature(fine, found.budget, amplitudes=second.amplitudes)

@@ -1,0 +1,159 @@
+"""What is known before a contour is chosen, and the poles that a bent contour has to deal with.
+
+A `Search` is made once for a field and an rtol and does not change; a `Planned` is a bent plan with the poles on the wrong side of its
+contour, as far as they were searched for. Everything is for one frequency.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..modes import misplaced
+from ..response.sampled_slab import SampledSlab
+from . import paths, residues, survey
+from .check_points import Checks
+from .paths import BentPlan, Contour, Extent
+
+#: The most plane waves of a contour: their response takes 3.2 MB a plane.
+MOST_PLANE_WAVES = 200_000
+#: The most beams whose spectra's ends a contour meets on the axis: each end takes panels of its own.
+MOST_CUT = 8
+#: From how many plane waves on those nearer to the normal than a beam's own are left out.
+MANY_PLANE_WAVES = 20_000
+#: What the ends of spectra and bands are looked for with, over rtol: three digits below it, so that none of them shows.
+BELOW_RTOL = 1e-3
+
+
+class Search(NamedTuple):
+    """What a contour is chosen by."""
+
+    slab: SampledSlab
+    checks: Checks
+    reach: Extent
+    rtol: float
+    noise: float  #: relative rounding of the response
+    sharp: float  #: distance from kx = 0 of the nearest singularity
+    ends: np.ndarray  #: |kx| where spectra are cut off that matter
+
+    @property
+    def start(self) -> float:
+        """Re kx from which poles are searched for."""
+        return min(1e-3 * self.slab.k0, 0.1 * min(self.sharp, self.reach.branch))
+
+    @property
+    def across(self) -> float:
+        """Length along x over which phases turn."""
+        return max(self.reach.extent, self.reach.source)
+
+
+class Planned(NamedTuple):
+    """A bent plan, and the poles on the wrong side of its contour as far as they were searched for."""
+
+    plan: BentPlan
+    poles: misplaced.MisplacedPoles
+    searched: float  #: up to this Re kx
+
+    @property
+    def unclear(self) -> bool:
+        """Whether there are more modes than can be told apart."""
+        return self.poles is misplaced.UNCLEAR
+
+    @property
+    def any_misplaced(self) -> bool:
+        """Whether a contour below the axis alone leaves any pole on its wrong side."""
+        return bool(self.poles.poles) or math.isfinite(self.poles.crossing)
+
+
+def begin(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: survey.Survey) -> tuple[Search, Planned]:
+    """The search, its band no wider than what arrives, and a first plan of which no pole is known."""
+    search = Search(s, checks, reach, rtol, seen.noise, seen.sharp, np.empty(0))
+    if too_many_plane_waves(first_plan(search)):  # the spectrum of a sharp edge, but a slab lets little of it through
+        reach = reach._replace(band=survey.arriving_band(s, checks, reach, BELOW_RTOL * rtol))
+        search = search._replace(reach=reach)
+    if first_plan(search).nodes > MANY_PLANE_WAVES:
+        low = checks.sources.low(s.k0, 1e-6 * rtol)
+        if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, reach.band):
+            search = search._replace(reach=reach._replace(low=low))
+    if checks.sources.requested.size <= MOST_CUT:
+        search = search._replace(ends=survey.cut_spectra(s, checks, search.reach, 0.1 * rtol))
+    return search, Planned(first_plan(search), misplaced.NONE, 0.0 if checks.guided else math.inf)
+
+
+def first_plan(search: Search, deepest: float = math.inf) -> BentPlan:
+    """A bent plan from the error terms, no deeper than `deepest`."""
+    return paths.plan_bent(search.reach, search.rtol, search.noise, deepest, search.sharp)
+
+
+def too_many_plane_waves(plan: BentPlan) -> bool:
+    """Whether a plan, or the second one that it is compared with, takes too many plane waves."""
+    return plan.other().nodes > MOST_PLANE_WAVES
+
+
+def with_poles(search: Search, planned: Planned) -> Planned:
+    """Poles on the wrong side of the plan's contour, as far as its band goes; a plan that crosses the axis where it has to.
+
+    The contour crosses no steeper than it leaves the origin.
+    """
+    plan = planned.plan
+    if plan.band <= planned.searched:
+        return planned
+    searched = 1.15 * plan.band  # beyond the end of the second contour, at 1.12 times the band
+    poles = misplaced.misplaced(search.slab, 1.05 * plan.depth, searched, search.start)
+    if math.isfinite(poles.crossing):
+        gap = poles.gap / 2
+        if plan.depth > 0.5 * gap:
+            plan = first_plan(search, 0.5 * gap)._replace(band=plan.band)
+        plan = plan._replace(crossing=poles.crossing, gap=gap)
+    return Planned(plan, poles, searched)
+
+
+def shallower(search: Search, planned: Planned, share: float = 1 / 3) -> Planned:
+    """A plan nearer to the axis: there are fewer modes between them."""
+    plan = first_plan(search, planned.plan.depth * share)._replace(band=planned.plan.band)
+    return Planned(plan, planned.poles, 0.0)
+
+
+def pair_of_contours(search: Search, planned: Planned) -> tuple[Contour, Contour]:
+    """The contour of a plan and a second one to compare it with, circles around the poles that they leave on the wrong side."""
+    first, second = (
+        residues.add_residues(
+            search.slab,
+            paths.bent_contour(plan),
+            planned.poles,
+            search.across,
+            search.reach.path,
+            plan is not planned.plan,
+        )
+        for plan in (planned.plan, planned.plan.other())
+    )
+    return first, second
+
+
+def refusal(search: Search) -> str:
+    """Why poles cannot be put right, and what would do."""
+    plan = first_plan(search)
+    # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
+    shallow = [first_plan(search, plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81)]
+    depths = [1.05 * p.depth for p in (plan, *shallow) if p is plan or p.other().nodes < MOST_PLANE_WAVES / 4]
+    loss = misplaced.enough_loss(search.slab, depths, 1.15 * plan.band, search.start)
+    remedy = (
+        ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"
+        if loss is None
+        else (
+            f": a relative loss of {loss:.0e} would do, density + {loss:.0e}j |density| and bulk modulus - {loss:.0e}j |bulk modulus| "
+            "in every layer and half-space"
+        )
+    )
+    return f"slab: it guides more backward waves than can be told from the forward ones; add loss{remedy}"
+
+
+def too_many(rtol: float) -> str:
+    """Why a question is refused that takes too many plane waves."""
+    return (
+        f"rtol: {rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
+        "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
+        "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
+    )

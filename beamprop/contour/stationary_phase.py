@@ -1,0 +1,102 @@
+"""Where a beam lands, by stationary phase: a plane wave of transfer function H is carried along x by -d(arg H)/dkx.
+
+The derivative is a difference over a small step in kx. Of the strong plane waves of a beam the least and the most shift span its
+footprint on a plane; on a long way, where plane waves part, those that are bright where they land.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..response.sampled_slab import SampledSlab
+from ..sources.base import Beam
+
+#: Below this |H| a difference over H may overflow: the smallest normal number is 2e-308, steps in kx and differences share the rest.
+FAINT = 1e-250
+#: Plane waves of more than this share of the largest |H| are strong: below, a beam's footprint would be that of its faint tails.
+STRONG = 0.1
+
+
+def _beside(h: Callable[[np.ndarray], np.ndarray], k: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
+    """H a step below and a step above each kx, along the last axis."""
+    low, high = np.split(h(np.concatenate([k - step, k + step], axis=-1).astype(complex)), 2, axis=-1)
+    return low, high
+
+
+def shifts(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
+    """How far each plane wave is carried along x, and 2 |H|; `low` and `high` are H a `step` below and above each kx."""
+    twice = low + high
+    size = np.abs(twice)
+    with np.errstate(over="ignore", invalid="ignore"):  # where H has a zero, which is not strong
+        return -np.imag((high - low) / np.where(size > FAINT, step * twice, 1.0)), size
+
+
+def span(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the most shift of the strong plane waves along the last axis, 0 where there are none."""
+    shift, size = shifts(low, high, step)
+    strong = (size > STRONG * size.max(axis=-1, keepdims=True)) & (size > FAINT)
+    return _extremes(shift, strong)
+
+
+def _extremes(shift: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the most of the shifts `where` it holds, along the last axis; 0 where there is none, or none finite."""
+    least, most = shift.min(-1, where=where, initial=np.inf), shift.max(-1, where=where, initial=-np.inf)
+    return np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
+
+
+#: H(kx) on one plane for each frequency: (F, n) -> (F, n).
+TransferToPlane = Callable[[np.ndarray], np.ndarray]
+
+#: From a way along z of so many 1/k0 on the window is found by `_far_span`, and waves land at most so far to the side before:
+#: a ray as steep as 0.98 k0 is carried five times its way along z, but for delays by resonances.
+FAR = 1e4
+#: Plane waves across a beam's band: so many for each side of the normal.
+ACROSS = 20
+
+
+def landing(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width (F,) of windows that hold the beam after a way `path` (F,) along z.
+
+    The beam's strong plane waves span the window.
+    """
+    lo, hi = beam.band(s.k0, 0.3)
+    even = bool(np.all(lo == -hi))  # H is even in kx too: half of the plane waves show all
+    k0 = s.k0[:, None]
+    count = 1 + (ACROSS if even else 2 * ACROSS)
+    k = np.clip(np.linspace(0 * lo if even else lo, hi, count, axis=-1), -0.98 * k0, 0.98 * k0)
+    step = 1e-4 * k0
+    least, most = span(*_beside(plane, k, step), step)
+    if even:
+        least, most = np.minimum(least, -most), np.maximum(most, -least)
+    least, most = (np.clip(v, -FAR / s.k0, FAR / s.k0) for v in (least, most))
+    far = path > FAR / s.k0
+    if np.any(far):
+        pairs = zip(_far_span(s, beam, plane, path), (least, most), strict=True)
+        least, most = (np.where(far, *pair) for pair in pairs)
+    return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
+
+
+#: Plane waves by which a far field is sampled, and what share of the largest |p| the window of a far field holds: half the peak,
+#: at which widths are measured, lies inside.
+RAYS, BRIGHT = 401, 0.25
+
+
+def _far_span(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the most shift (F,) of the rays that are bright where they land.
+
+    Rays part on a long way: |p| of a far field is |S H| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands. Few are as
+    bright as the strongest, so that the window is narrower than all the plane waves of the beam would span it.
+    """
+    lo, hi = (np.clip(v, -0.999 * s.k0, 0.999 * s.k0) for v in beam.band(s.k0, 1e-2))
+    k0, k = s.k0[:, None], np.linspace(lo, hi, RAYS, axis=-1)
+    step = np.minimum(1e-4 * k0, 0.01 * k0 / (1 + k0 * path[:, None]))  # phases turn little over a step
+    x, size = shifts(*_beside(plane, k, step), step)
+    spread = np.abs(np.gradient(x, axis=-1)) / (np.maximum(hi - lo, 1e-6 * s.k0)[:, None] / (RAYS - 1))
+    brightness = size * np.abs(beam.spectrum(k, k0)) / np.sqrt(spread + beam.reach(0.1) ** 2)
+    bright = brightness > BRIGHT * np.max(brightness, axis=-1, keepdims=True)
+    bright[:, 1:] |= bright[:, :-1]
+    bright[:, :-1] |= bright[:, 1:]
+    return _extremes(x, bright)

@@ -1,0 +1,62 @@
+"""A pair of straight contours for FFTs, where that is cheaper than a matrix product over the bent contour, and as accurate."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..arrays.fft import fast_length
+from . import error, paths, sums
+from .quadrature import Quadrature
+from .search import Planned, Search, pair_of_contours, with_poles
+
+#: FFTs are for even grids of at least this many points.
+FEWEST = 8
+#: What share of its window a straight contour is tried with first, and how much more of everything it is given then: a plan's
+#: error terms are bounds, which most fields keep with less.
+TRIES = ((0.78, 1.0), (0.9, 1.0), (1.0, 1.4))
+#: Time of two FFTs over n log2 n, over the time of a multiplication in a matrix product; measured: `experiments/benchmarks/steps.py` has
+#: the row of FFTs against matrix products.
+FFT_STEP = 5.5
+
+
+def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
+    """Spacing of a grid that is even as far as an FFT needs it (see `sums.grid_sum`), 0 for any other."""
+    grid = sums.grid_of(x)
+    moved = band * grid.unevenness
+    return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
+
+
+def fft_is_cheaper(n: int, plane_waves: float, points: int) -> bool:
+    """Whether two FFTs of length n cost less than a row of a matrix product."""
+    return FFT_STEP * n * math.log2(n) < plane_waves * points
+
+
+def quadrature_on_straight_contours(
+    search: Search, planned: Planned, x: np.ndarray
+) -> tuple[Quadrature | None, Planned]:
+    """Straight contours that keep rtol, None where they do not or are not cheaper; and the plan, with its poles.
+
+    They are compared with the second bent contour of the plan, once for each plan.
+    """
+    plan, rtol = planned.plan, search.rtol
+    dx = spacing_for_fft(x, plan.band, rtol)
+    if not dx or plan.grading or plan.low:
+        return None, planned
+    plane_waves, second = plan.band * plan.window / (2 * np.pi), None
+    for share, tighten in TRIES:
+        straight = paths.plan_straight(search.reach, rtol, tighten, search.noise)
+        n = fast_length(max(math.ceil(share * straight.window / dx), x.size))
+        if not fft_is_cheaper(n, plane_waves, x.size):
+            break
+        planned = with_poles(search, planned)
+        if planned.any_misplaced:
+            break
+        second = second or error.sampled(search.checks, pair_of_contours(search, planned)[1], True)
+        contour = paths.straight_contour(straight._replace(window=n * dx))
+        first = error.sampled(search.checks, contour, False)
+        budget = error.estimate(search.checks, first, second).budget
+        if budget.total.max() <= rtol:
+            return Quadrature(contour, budget, n, amplitudes=first.amplitudes), planned
+    return None, planned

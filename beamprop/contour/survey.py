@@ -1,0 +1,148 @@
+"""A first look at the response: its rounding, where beams land, whether it is sharp at kx = 0, how much of a band arrives."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..response.sampled_slab import SampledSlab
+from ..response.transfer_function import TransferFunction
+from ..sources.angles import AngleInterpolation
+from . import near_normal, paths, sums
+from .check_points import Checks, interpolated, strong_waves
+from .error import SHIFT
+from .paths import EPS, Extent
+from .stationary_phase import span
+from .sums import beam_amplitudes
+
+
+class Survey(NamedTuple):
+    """What a first look at the response tells."""
+
+    noise: float  #: relative rounding of the response at the first and last plane
+    peaks_outside: np.ndarray  #: see `Checks`
+    sharp: float  #: distance from kx = 0 of the nearest singularity, inf where none is near
+
+
+def survey(
+    s: SampledSlab,
+    sources: AngleInterpolation,
+    transfer: TransferFunction,
+    x: np.ndarray,
+    z: np.ndarray,
+    reach: Extent,
+    rtol: float,
+) -> Survey:
+    """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
+    whether the response is sharp at kx = 0.
+
+    All at the first and the last plane: if the beam lands among the positions there, it does so between.
+    """
+    k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
+    requested = sources.requested
+    chosen = sources.spread(3)
+    rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[chosen]])
+    step = 1e-6 * s.k0
+    beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
+    ends = z[[0, -1]] if z.size > 1 else z
+    # Gauss panels over propagating waves are wider than the step of a trapezoid rule
+    wide = min(0.2 * reach.branch, math.sqrt(2 * s.k0 / max(reach.path, 1e-9)))
+    first_node = math.pi / paths.plan_bent(reach, rtol).window if sources.beam.entire else wide
+    near = near_normal.around(np.array([first_node]))
+    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is not calm
+        h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
+    noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
+    allowed = max(0.01 * rtol, 30 * max(noise, EPS))
+    sharp = math.inf
+    if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
+        sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
+    middle, half = _landing(sources, h[:, 2 * k.size + near.size :], chosen.size, step)
+    peaks_outside = np.zeros((requested.size, z.size))
+    if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
+        if z.size > 1:
+            middle, half = _landing(sources, transfer(beside, z), chosen.size, step)
+        places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
+        peaks_outside = interpolated(
+            requested, requested[chosen], _brightness(s, sources, transfer, z, requested[chosen], places.ravel())
+        )
+    return Survey(noise, peaks_outside, sharp)
+
+
+def wide_enough(transfer: TransferFunction, z: np.ndarray, low: float, band: float) -> bool:
+    """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane, not only what else there is."""
+    k = np.linspace(low, band, 24) + 0j
+    h = np.abs(transfer(k, z[[0, -1]] if z.size > 1 else z))
+    return bool(np.all(np.max(np.nan_to_num(h), axis=1) > 0.01))
+
+
+def _landing(sources: AngleInterpolation, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Middle and half-width of the places where `count` beams land on each plane, (Z, count), from h beside their rays."""
+    low, high = (v.reshape(h.shape[0], count, -1) for v in np.split(h, 2, axis=1))
+    least, most = span(low, high, step)
+    return sources.beam.centre + (least + most) / 2, sources.beam.reach(0.1) + (most - least) / 2
+
+
+def _change(a: np.ndarray, b: np.ndarray) -> float:
+    """Largest relative change from a to b, over the largest of each row."""
+    size = np.max(np.abs(a), axis=1, keepdims=True)
+    change = np.abs(a - b) / np.where(size > 0, size, 1.0)
+    return float(np.max(change, initial=0.0, where=np.isfinite(change)))
+
+
+#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum: beyond,
+#: no peak outside is known, and estimates are larger.
+MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
+
+
+def _brightness(
+    s: SampledSlab,
+    sources: AngleInterpolation,
+    transfer: TransferFunction,
+    z: np.ndarray,
+    angles: np.ndarray,
+    x: np.ndarray,
+) -> np.ndarray:
+    """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
+    x = x - sources.beam.centre
+    path = float(z.max()) - sources.beam.z0 + s.thickness
+    count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
+    largest = np.full((2, angles.size, z.size), np.inf)
+    if count > MOST_RAYS or count * x.size > MOST_LOOKED_AT:
+        return np.zeros(largest.shape[1:])
+    beams = AngleInterpolation(sources.beam, angles)
+    for i, more in enumerate((1.0, 1.4)):
+        contour = paths.propagating_contour(s.k0, s.real_branches, int(more * count))
+        right, left = beam_amplitudes(s.k0, beams, contour)
+        with np.errstate(invalid="ignore", over="ignore"):
+            p = sums.direct_sum(contour, transfer(contour.k, z), right, left, x)
+            largest[i] = np.max(np.abs(p), axis=2)
+    return np.nan_to_num(largest.min(axis=0), nan=0.0, posinf=0.0)
+
+
+def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> float:
+    """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
+    k = np.geomspace(0.01 * reach.k0, reach.band, 400)
+    h = np.abs(checks.transfer(k.astype(complex), checks.z))
+    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
+    size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # by decade of kx
+    size = np.maximum.accumulate(size[:, ::-1], axis=1)[:, ::-1]  # edges have spectra with zeros
+    strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
+    last = int(np.flatnonzero(strong)[-1]) if np.any(strong) else 0
+    return float(k[min(last + 1, k.size - 1)])
+
+
+def cut_spectra(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> np.ndarray:
+    """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
+    ends = checks.sources.spectrum_ends(s.k0)
+    ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
+    if not ends.size:
+        return ends
+    # spectra of edges have zeros: the last twentieth in front of each end stands for it
+    before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
+    k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
+    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
+    size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+    at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
+    return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]
