@@ -11,6 +11,7 @@ import beamprop as bp
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import stretches
 from beamprop.fields import evaluate
+from beamprop.modes import misplaced
 from beamprop.modes.guided import dispersion_of
 from beamprop.profiles import fwhm, sections
 from beamprop.response.sampled_slab import FluidSlab, sample
