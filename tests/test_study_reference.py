@@ -14,14 +14,15 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
 import itertools
 
-from accuracy_study import bands, hard, reference
-from accuracy_study.cases import Case
-from accuracy_study.contour import panels
-from accuracy_study.medium import Medium
-from accuracy_study.near_axis import NearAxis
-from accuracy_study.numbering import CASES, make_case, numbers_of
-from accuracy_study.slabs import SLABS
-from accuracy_study.source import Source
+from accuracy_study.case import Case
+from accuracy_study.cases import hard
+from accuracy_study.cases.numbering import CASES, make_case, numbers_of
+from accuracy_study.cases.slabs import SLABS
+from accuracy_study.reference import bands, quadrature
+from accuracy_study.reference.contour import panels
+from accuracy_study.reference.medium import Medium
+from accuracy_study.reference.near_axis import NearAxis
+from accuracy_study.reference.source import Source
 
 F = 2500.0
 LAM = 343.0 / F
@@ -34,7 +35,7 @@ def case_of(slab, beam, x, z, kind="uniform fluid", rtol=1e-9):
 
 def truth(case):
     with np.errstate(all="ignore"):
-        found = reference.truth(case, np.zeros(0) + case.beam.centre)
+        found = quadrature.truth(case, np.zeros(0) + case.beam.centre)
     assert not isinstance(found, str), found
     return found
 
@@ -168,7 +169,7 @@ def on_the_axis(case, loss, count=1500):
     steps = end * np.geomspace(1e-12, 1, 120)
     edges = np.concatenate([np.linspace(0, end, count), *(p + side * steps for p in points for side in (-1, 1)), steps])
     k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
-    return reference.field_sum(
+    return quadrature.field_sum(
         source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, case.x - case.beam.centre
     )
 
@@ -238,7 +239,7 @@ def test_a_resonance_in_what_a_nearly_soft_layer_lets_through():
     angle, w = panels(np.unique(np.concatenate([[0], np.pi / 2 * 1.05 ** -np.arange(0.0, 500)])))
     k, kz = m.k0 * np.sin(angle) + 0j, m.k0 * np.cos(angle)
     source = Source(beam, m.k0)
-    expected = reference.field_sum(source, lambda kk: m.response(kk, case.z, beam.z0), k, kz * w, kz, case.x)
+    expected = quadrature.field_sum(source, lambda kk: m.response(kk, case.z, beam.z0), k, kz * w, kz, case.x)
     found = truth(case)
     assert np.all(np.abs(found.p - expected).max(axis=1) < 1e-10 * np.abs(expected).max(axis=1))
 

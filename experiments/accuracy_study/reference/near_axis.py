@@ -38,8 +38,8 @@ class NearAxis:
             circle = [mpmath.expjpi(2 * mpmath.mpf(j) / TERMS) for j in range(TERMS)]
             values = [_waves(m, layers, z[self.inside], mpmath.mpf(self.scale) ** 2 * c) for c in circle]
             self.series = np.array([_coefficients(list(row), circle) for row in zip(*values, strict=True)])
-        some = self.series[0, :9]
-        roots = np.abs(np.roots(some[::-1] / np.abs(some).max()))
+        leading = self.series[0, :9]
+        roots = np.abs(np.roots(leading[::-1] / np.abs(leading).max()))
         #: |kx| of the pole nearest to 0.
         self.smallest = float(self.scale * np.sqrt(min([r for r in roots if r > 0], default=1.0)))
 
