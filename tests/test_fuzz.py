@@ -1,14 +1,10 @@
 """Random media and calls, a few hundred of each and always the same: answers, and ValueErrors that name an argument."""
 
 import sys
-from pathlib import Path
-
-import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
 import fuzz
 import fuzz_cases
+import pytest
 
 import beamprop as bp
 

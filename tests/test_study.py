@@ -8,9 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
 from accuracy_study.study import report, terms
 
 ROOT = Path(__file__).parents[1]

@@ -1,19 +1,10 @@
 """The accuracy study's own truth, held to what is more independent still: 40 digits, closed forms, real-axis integrals."""
 
-import sys
-from pathlib import Path
+import itertools
 
 import mpmath
 import numpy as np
 import pytest
-from scipy.special import hankel1
-
-import beamprop as bp
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
-import itertools
-
 from accuracy_study.case import Case
 from accuracy_study.cases import hard
 from accuracy_study.cases.numbering import CASES, make_case, numbers_of
@@ -23,6 +14,9 @@ from accuracy_study.reference.contour import panels
 from accuracy_study.reference.medium import Medium
 from accuracy_study.reference.near_axis import NearAxis
 from accuracy_study.reference.source import Source
+from scipy.special import hankel1
+
+import beamprop as bp
 
 F = 2500.0
 LAM = 343.0 / F
