@@ -3,7 +3,7 @@
 import sys
 
 import fuzz
-import fuzz_cases
+import fuzz_calls
 import pytest
 
 import beamprop as bp
@@ -33,7 +33,7 @@ def _named():
 
 def test_every_public_function_is_called():
     """The table of calls has all that is public."""
-    assert _named() <= set(fuzz_cases.CALLS)
+    assert _named() <= set(fuzz_calls.CALLS)
 
 
 @pytest.mark.parametrize(
