@@ -11,11 +11,11 @@ wrong side of the contour are counted by the argument principle on the study's o
 
 from __future__ import annotations
 
-from accuracy_study.command import main
-from accuracy_study.limit import limiting_absorption
-from accuracy_study.numbering import CASES, make_case
-from accuracy_study.slabs import SLABS
-from accuracy_study.study import judge
+from accuracy_study.cases.numbering import CASES, make_case
+from accuracy_study.cases.slabs import SLABS
+from accuracy_study.study.command import main
+from accuracy_study.study.comparison import judge
+from accuracy_study.study.limit import limiting_absorption
 
 __all__ = ["CASES", "SLABS", "judge", "limiting_absorption", "make_case"]
 

@@ -110,7 +110,7 @@ def ask_all(kind: str, first: int, last: int) -> Iterator[dict[str, Any]]:
 
     matplotlib.use("agg")
     import matplotlib.pyplot as plt
-    from fuzz_cases import CASES
+    from fuzz_calls import CASES
 
     signal.signal(signal.SIGPROF, _out_of_time)
     for number in range(first, last):
@@ -187,7 +187,7 @@ def bad_ones(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def again(case: str) -> None:
     """One case, with its traceback and warnings."""
-    from fuzz_cases import CASES
+    from fuzz_calls import CASES
 
     kind, number = case.split(":")
     for name, ask in CASES[kind](int(number)):

@@ -7,7 +7,6 @@ Media are pairs (density, bulk modulus), layers (density, bulk modulus, thicknes
 
 from __future__ import annotations
 
-import mpmath as mp
 import numpy as np
 from scipy.optimize import brentq
 
@@ -134,31 +133,3 @@ def gaussian(fwhm, angle=0.0, k0=K0):
     """S(kx) of exp(-(x/a)^2 + i k0 sin(angle) x), half as large at +-fwhm/2."""
     a = fwhm / 2 / np.sqrt(np.log(2))
     return lambda k: a * np.sqrt(np.pi) * np.exp(-((a * (k - k0 * np.sin(np.radians(angle))) / 2) ** 2))
-
-
-def exact_response(layers, after, k, z, z0, omega, before=AIR, digits=30):
-    """`response` in front of and behind layers of positive density and modulus, with 30 digits."""
-    with mp.workdps(digits):
-        w, total = mp.mpf(omega), mp.fsum(mp.mpf(d) for *_, d in layers)
-        rows = np.empty((len(z), len(k)), complex)
-        for j, value in enumerate(k):
-            kx = mp.mpmathify(complex(value))
-
-            def kz_of(rho, K, kx=kx):
-                return mp.sqrt(w**2 * mp.mpf(rho) / mp.mpf(K) - kx**2)
-
-            kz1, kz2 = kz_of(*before), kz_of(*after)
-            p, q = mp.mpf(1), 1j * kz2 / mp.mpf(after[0])
-            for rho, K, d in reversed(layers):
-                kz = kz_of(rho, K)
-                c, s = mp.cos(kz * mp.mpf(d)), mp.sin(kz * mp.mpf(d))
-                p, q = c * p - mp.mpf(rho) * s / kz * q, kz * s / mp.mpf(rho) * p + c * q
-            y = 1j * kz1 / mp.mpf(before[0])
-            unit = 2 * mp.exp(-1j * kz1 * mp.mpf(z0)) / (p + q / y)
-            for i, depth in enumerate(z):
-                if depth <= 0:
-                    at = mp.cos(kz1 * mp.mpf(depth)) * p + mp.sin(kz1 * mp.mpf(depth)) / kz1 * mp.mpf(before[0]) * q
-                else:
-                    at = mp.exp(1j * kz2 * (mp.mpf(depth) - total))
-                rows[i, j] = complex(at * unit)
-    return rows

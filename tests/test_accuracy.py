@@ -1,9 +1,8 @@
 """rtol is a promise: random cases against an independent quadrature, limits of small loss, and nothing that is not finite."""
 
-import sys
 import warnings
-from pathlib import Path
 
+import accuracy
 import numpy as np
 import pytest
 
@@ -13,10 +12,6 @@ from beamprop.contour import paths, survey
 from beamprop.profiles import sections
 from beamprop.response import sampled_slab, transfer_function
 from beamprop.sources import angles
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
-import accuracy
 
 F = 2500.0
 #: Numbers of the study's cases, four of each kind of slab: the first whose truth takes about a second or less.

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 from click.testing import CliRunner
 from matplotlib.image import imread
+from versions import names
 
 import beamprop as bp
 from beamprop.cli import main
@@ -58,10 +59,6 @@ def assert_same_numbers(got, want, rtol=1e-9):
         np.testing.assert_allclose(
             got[name], v.values, rtol=rtol, atol=1e-12 * np.abs(np.nan_to_num(v.values)).max(initial=0)
         )
-
-
-def names(folder):
-    return sorted(path.name for path in folder.iterdir())
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -1,18 +1,12 @@
 """The experiments, run coarsely and held to the paper's statements; known exceptions are named."""
 
-import sys
-from pathlib import Path
-
-import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
 import fig2
 import fig3
 import fig4
 import fig5
 import fig5_fem
 import fig6
+import pytest
 
 #: Statements of the paper that the exact solution does not confirm.
 EXCEPTIONS = {

@@ -1,14 +1,10 @@
 """Random media and calls, a few hundred of each and always the same: answers, and ValueErrors that name an argument."""
 
 import sys
-from pathlib import Path
-
-import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
 
 import fuzz
-import fuzz_cases
+import fuzz_calls
+import pytest
 
 import beamprop as bp
 
@@ -37,7 +33,7 @@ def _named():
 
 def test_every_public_function_is_called():
     """The table of calls has all that is public."""
-    assert _named() <= set(fuzz_cases.CALLS)
+    assert _named() <= set(fuzz_calls.CALLS)
 
 
 @pytest.mark.parametrize(

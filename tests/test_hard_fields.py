@@ -1,33 +1,17 @@
 """Fields that are hard to compute: each against a truth of its own, from plain matrices on contours or from closed forms."""
 
-import warnings
-
 import mpmath as mp
 import numpy as np
 import pytest
 import sided
+from accuracy_study.reference import many_digits
+from accuracy_study.reference.medium import Medium
+from answers import field_and_warning, plane_errors, slab_of
 from sided import AIR, BULK, K0, LAM, RHO, F
 
 import beamprop as bp
 
 X = np.linspace(-0.5, 0.5, 21)
-
-
-def slab_of(layers, after=AIR):
-    return bp.Slab([bp.Layer(bp.Fluid(rho, K), d) for rho, K, d in layers], 1, after=bp.Fluid(*after))
-
-
-def asked(*question, **more):
-    """A field, and whether it was warned of."""
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        ds = bp.field(*question, **more)
-    return ds, any(issubclass(w.category, bp.AccuracyWarning) for w in said)
-
-
-def off(p, truth):
-    """Largest error on each plane over its largest |p|."""
-    return np.abs(p - truth).max(axis=1) / np.abs(truth).max(axis=1)
 
 
 # --- backward waves ---------------------------------------------------------------------------------------
@@ -59,11 +43,13 @@ def test_backward_waves_that_a_half_space_guides(case):
     for loss in (0.0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
         layers, after = with_loss(case, loss)
         truth = sided.summed(k, w, sided.response(layers, after, k, z, -0.02), sided.gaussian(0.05, 20), X)
-        ds, warned = asked(slab_of(layers, after), bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
+        ds, warned = field_and_warning(
+            slab_of(layers, after=after), bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8
+        )
         p[loss] = ds.p.values
-        assert off(p[loss], truth).max() < 1e-8
+        assert plane_errors(p[loss], truth).max() < 1e-8
         assert not warned
-    assert off(p[1e-5], p[0.0]).max() == pytest.approx(10 * off(p[1e-6], p[0.0]).max(), rel=0.05)
+    assert plane_errors(p[1e-5], p[0.0]).max() == pytest.approx(10 * plane_errors(p[1e-6], p[0.0]).max(), rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -83,8 +69,8 @@ def test_a_negative_layer_in_front_of_density_zero(layers):
     k, w = sided.contour([*known, (K0, 1)], 330.0, 6.0)
     truth = sided.summed(k, w, sided.response(layers, None, k, z, -0.02), sided.gaussian(0.05, 20), X)
     wall = slab_of([*layers, (0.0, BULK, 0.1 * LAM)])
-    ds, warned = asked(wall, bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
-    assert off(ds.p.values, truth).max() < 1e-8
+    ds, warned = field_and_warning(wall, bp.GaussianBeam(0.05, 20, 0, -0.02), F, X, z, rtol=1e-8)
+    assert plane_errors(ds.p.values, truth).max() < 1e-8
     assert not warned
 
 
@@ -106,10 +92,11 @@ def test_a_cavity_between_quarter_wave_mirrors(mirror, beside):
     frequency, x = F * (1 + beside), np.linspace(-1, 1, 21)
     k0, z = 2 * np.pi * frequency / 343.0, [-0.05, sum(d for *_, d in layers)]
     k, w = sided.contour([(k0, 1)], 88.0, 2.0, finest=1e-8, panel=4.0, order=12)
-    h = sided.exact_response(layers, AIR, k, z, -0.1, 2 * np.pi * frequency)
+    medium = Medium(slab_of(layers), frequency)
+    h = np.array([many_digits.response(medium, kx, z, -0.1, digits=30) for kx in k]).T
     truth = sided.summed(k, w, h, sided.gaussian(0.5, 3, k0), x)
-    ds, warned = asked(slab_of(layers), bp.GaussianBeam(0.5, 3, 0, -0.1), frequency, x, z, rtol=1e-8)
-    error, estimate = off(ds.p.values, truth).max(), float(ds.error_estimate)
+    ds, warned = field_and_warning(slab_of(layers), bp.GaussianBeam(0.5, 3, 0, -0.1), frequency, x, z, rtol=1e-8)
+    error, estimate = plane_errors(ds.p.values, truth).max(), float(ds.error_estimate)
     assert error < 3 * estimate
     assert warned == (estimate > 1e-8)
     assert estimate < 1e-4  # no worse than what rounding leaves of the sharpest
@@ -130,10 +117,10 @@ def test_planes_at_nodes_in_front_of_a_soft_wall(widths):
     kz = np.sqrt(K0**2 - k**2)
     h = np.array([2j * np.sin(kz * depth) * np.exp(-1j * kz * beam.z0) for depth in z])
     truth = sided.summed(k, w, h, sided.gaussian(beam.fwhm), x)
-    ds, warned = asked(slab_of([(0.0, BULK, 0.1)]), beam, F, x, z, rtol=1e-8)
+    ds, warned = field_and_warning(slab_of([(0.0, BULK, 0.1)]), beam, F, x, z, rtol=1e-8)
     p = ds.p.values
     assert np.all(np.abs(p[z == 0]) < 1e-13)
-    assert off(p[z < 0], truth[z < 0]).max() < 1e-8
+    assert plane_errors(p[z < 0], truth[z < 0]).max() < 1e-8
     assert not warned
 
 
@@ -158,7 +145,7 @@ def test_nodes_between_the_planes_that_stand_for_all(wall, rtol):
     truth = sided.summed(k, w, h, spectrum, x)
     largest = np.abs(sided.summed(k, w, h, spectrum, wide)).max(axis=1)
     assert largest[1::2].max() < 1e-2 * largest[::2].min()
-    ds, warned = asked(slab_of([hard if wall == "hard" else (0.0, BULK, 0.1)]), beam, F, x, z, rtol=rtol)
+    ds, warned = field_and_warning(slab_of([hard if wall == "hard" else (0.0, BULK, 0.1)]), beam, F, x, z, rtol=rtol)
     error = (np.abs(ds.p.values - truth).max(axis=1) / largest).max()
     assert error < rtol
     assert error < 3 * float(ds.error_estimate)
@@ -205,7 +192,7 @@ def test_behind_a_quarter_wave_mirror_near_its_band_edge(near, middle, lands):
     assert np.all(largest > 0.01)
     cell = [bp.Layer(bp.AIR, LAM / 4), bp.Layer(bp.Fluid(3 * RHO, 3 * BULK), LAM / 4)]
     z = [50 * LAM + d for d in behind]
-    ds, warned = asked(bp.Slab(cell, 100), bp.GaussianBeam(0.5, z0=-0.1), f, x, z, rtol=1e-8)
+    ds, warned = field_and_warning(bp.Slab(cell, 100), bp.GaussianBeam(0.5, z0=-0.1), f, x, z, rtol=1e-8)
     error = np.abs(ds.p.values - truth).max(axis=1)
     assert (error / largest).max() < 1e-8
     assert (error / np.abs(truth).max(axis=1)).max() < 1e-4

@@ -1,28 +1,14 @@
 """Positions, origins, widths and slabs as users ask for them: answered to rtol, and not refused or warned of without need."""
 
-import warnings
-
 import numpy as np
 import pytest
 import sided
+from answers import field_and_warning, plane_errors, slab_of
 from sided import AIR, BULK, K0, LAM, RHO, F
 
 import beamprop as bp
 
 PAPER = bp.Slab(bp.lmmd_cell(), 450)
-
-
-def asked(*question, **more):
-    """A field, and whether it was warned of."""
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        ds = bp.field(*question, **more)
-    return ds, any(issubclass(w.category, bp.AccuracyWarning) for w in said)
-
-
-def off(p, truth):
-    """Largest error on each plane over its largest |p|."""
-    return np.abs(p - truth).max(axis=-1) / np.abs(truth).max(axis=-1)
 
 
 # --- positions --------------------------------------------------------------------------------------------
@@ -37,12 +23,12 @@ def test_positions_that_are_even_to_printed_digits(points, digits):
     span = 20.0
     x = np.round(np.linspace(-0.5, 0.5, points), digits) * span
     layers, beam, z = [(0.7 * RHO, 1.6 * BULK, 0.2)], bp.GaussianBeam(0.2, 20, 0, -0.1), [-0.05, 0.1, 0.3]
-    slab = bp.Slab([bp.Layer(bp.Fluid(rho, K), d) for rho, K, d in layers])
+    slab = slab_of(layers)
     some = np.unique(np.concatenate([np.linspace(0, points - 1, 41).astype(int), points // 2 + np.arange(-20, 21)]))
     k, w = sided.contour([(K0, 1)], 120.0, 0.4, panel=2.0)
     truth = sided.summed(k, w, sided.response(layers, AIR, k, z, -0.1), sided.gaussian(0.2, 20), x[some])
-    ds, warned = asked(slab, beam, F, x, z, rtol=1e-11)
-    assert off(ds.p.values[:, some], truth).max() < 1e-11
+    ds, warned = field_and_warning(slab, beam, F, x, z, rtol=1e-11)
+    assert plane_errors(ds.p.values[:, some], truth).max() < 1e-11
     assert not warned
 
 
@@ -60,7 +46,7 @@ def test_answers_do_not_depend_on_the_origin(x0):
             p, q = (
                 bp.field(PAPER, beam, F, x + beam.centre - here.centre, z, **more).p.values for beam in (here, there)
             )
-            assert off(q, p).max() < 1e-11
+            assert plane_errors(q, p).max() < 1e-11
         one, two = bp.beam_width(PAPER, here, F), bp.beam_width(PAPER, there, F)
         for width in ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air", "peak_out"):
             assert float(two[width] / one[width]) == pytest.approx(1, abs=1e-11)
@@ -84,8 +70,8 @@ def test_a_gaussian_of_20_000_wavelengths_at_45_degrees():
     kx, kz = K0 / np.sqrt(2), K0 / np.sqrt(2)
     spread = 1 + 2j * z * K0**2 / kz**3 / a**2
     truth = np.exp(1j * (kx * x + kz * z) - (x - z * kx / kz) ** 2 / a**2 / spread) / np.sqrt(spread)
-    ds, warned = asked(bp.Slab.uniform(bp.AIR, 0.1), beam, F, x, [0.0, z], rtol=1e-8)
-    assert off(ds.p.values, np.array([np.exp(1j * kx * x - (x / a) ** 2), truth])).max() < 1e-8
+    ds, warned = field_and_warning(bp.Slab.uniform(bp.AIR, 0.1), beam, F, x, [0.0, z], rtol=1e-8)
+    assert plane_errors(ds.p.values, np.array([np.exp(1j * kx * x - (x / a) ** 2), truth])).max() < 1e-8
     assert not warned
 
 
@@ -96,11 +82,11 @@ def test_half_spaces_nearly_rigid_or_of_huge_speed(density, speed):
     layers, z = [(2 * RHO, 3 * BULK, 0.3 * LAM)], [-0.05, 0.0, 0.02]
     x = np.linspace(-1, 1, 41)
     near = 2 * np.pi * F / speed
-    slab = bp.Slab([bp.Layer(bp.Fluid(*layers[0][:2]), layers[0][2])], 1, after=bp.Fluid(*after))
+    slab = slab_of(layers, after=after)
     k, w = sided.contour([(K0, 1)], 120.0, 2.0, finest=1e-3 * near, panel=1.0)
     truth = sided.summed(k, w, sided.response(layers, after, k, z, -0.1), sided.gaussian(0.2, 10), x)
-    ds, warned = asked(slab, bp.GaussianBeam(0.2, 10, 0, -0.1), F, x, z, rtol=1e-8)
-    assert off(ds.p.values, truth).max() < 1e-8
+    ds, warned = field_and_warning(slab, bp.GaussianBeam(0.2, 10, 0, -0.1), F, x, z, rtol=1e-8)
+    assert plane_errors(ds.p.values, truth).max() < 1e-8
     assert not warned
 
 
@@ -114,12 +100,12 @@ def test_slits_in_front_of_the_paper_s_slab_with_little_loss(gap):
     p = {}
     for loss in (0.0, 1e-6, 1e-5, 1e-4):
         slab = bp.Slab(bp.lmmd_cell(0.05 + 1j * loss, loss / 2), 450)
-        ds, warned = asked(slab, beam, F, x, [0.0, slab.thickness], rtol=1e-6)
+        ds, warned = field_and_warning(slab, beam, F, x, [0.0, slab.thickness], rtol=1e-6)
         assert not warned
         p[loss] = ds.p.values
-    assert off(p[1e-6], p[0.0]).max() < 1e-3
-    assert off(p[1e-5], p[0.0]).max() == pytest.approx(10 * off(p[1e-6], p[0.0]).max(), rel=0.1)
-    assert off(p[1e-4], p[0.0]).max() == pytest.approx(100 * off(p[1e-6], p[0.0]).max(), rel=0.5)
+    assert plane_errors(p[1e-6], p[0.0]).max() < 1e-3
+    assert plane_errors(p[1e-5], p[0.0]).max() == pytest.approx(10 * plane_errors(p[1e-6], p[0.0]).max(), rel=0.1)
+    assert plane_errors(p[1e-4], p[0.0]).max() == pytest.approx(100 * plane_errors(p[1e-6], p[0.0]).max(), rel=0.5)
 
 
 def test_100_000_periods_without_loss():
@@ -132,9 +118,11 @@ def test_100_000_periods_without_loss():
     for loss in (0.0, 1e-8, 1e-7):
         layers = [bp.Layer(lossy(layer.fluid, loss), layer.thickness) for layer in cell.layers]
         slab = bp.Slab(layers, 100_000, lossy(bp.AIR, loss), lossy(bp.AIR, loss))
-        ds, warned = asked(slab, bp.GaussianBeam(0.012, 0, 0, -0.005), F, x, [0.0, slab.thickness], rtol=1e-6)
+        ds, warned = field_and_warning(
+            slab, bp.GaussianBeam(0.012, 0, 0, -0.005), F, x, [0.0, slab.thickness], rtol=1e-6
+        )
         assert not warned
         p[loss] = ds.p.values
-    little, more = (off(p[loss], p[0.0]).max() for loss in (1e-8, 1e-7))
+    little, more = (plane_errors(p[loss], p[0.0]).max() for loss in (1e-8, 1e-7))
     assert 1e-6 < little < 1e-2
     assert more == pytest.approx(10 * little, rel=0.05)

@@ -127,13 +127,8 @@ def test_field_beside_a_backward_mode(density, thickness):
     assert apart[1] / apart[2] == pytest.approx(10, rel=0.02)
     lossy = thin(density, thickness, 1e-2)
     a = 0.02 / (2 * np.sqrt(np.log(2)))
-    layers = [(layer.fluid.density, layer.fluid.bulk_modulus, layer.thickness) for layer in lossy.cell.layers]
-    air = (1.25, BULK)
     want = oracles.open_field(
-        layers,
-        1,
-        air,
-        air,
+        lossy,
         F,
         lambda k: a * np.sqrt(np.pi) * np.exp(-((a * (k - K0 / 2) / 2) ** 2)),
         -0.05,
@@ -141,7 +136,7 @@ def test_field_beside_a_backward_mode(density, thickness):
         z,
         bend=0.02,
         band=900,
-        count=400001,
+        count=200001,
     )
     got = bp.field(lossy, beam, F, x, z).p.values
     assert np.abs(got - want).max() < 2e-8 * largest
@@ -164,10 +159,7 @@ def test_field_far_from_a_slab_with_backward_modes():
     assert any(abs(k) < 0.9 * k0 for k in found.poles)
     x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
     want = oracles.open_field(
-        [(layer.fluid.density, layer.fluid.bulk_modulus, layer.thickness) for layer in cell.layers],
-        12,
-        (1.25, BULK),
-        (1.25, BULK),
+        slab,
         frequency,
         lambda k: a * np.sqrt(np.pi) * np.exp(-((a * k / 2) ** 2) - 0.18j * k),
         -4.0,
@@ -175,7 +167,7 @@ def test_field_far_from_a_slab_with_backward_modes():
         z,
         bend=0.05,
         band=160,
-        count=60001,
+        count=30001,
     )
     got = bp.field(slab, beam, frequency, x, z).p.values
     assert np.all(np.abs(got - want).max(axis=1) < 2e-8 * np.abs(want).max(axis=1))

@@ -10,9 +10,9 @@ import sys
 import threading
 import time
 
-import numpy as np
 import pytest
 import xarray as xr
+from versions import names, version, versions_in
 
 import beamprop as bp
 from beamprop.io.storage import settled, whole
@@ -20,20 +20,6 @@ from beamprop.io.storage import settled, whole
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and permissions")
 NAMES = ["a.nc", "a.zarr"]
 SLAB, BEAM = bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.1)
-
-
-def version(number):
-    """A dataset in which every value and attribute tells its version."""
-    parts = {f"v{k}": ("x", np.full(50, float(number)), {"version": number}) for k in range(6)}
-    return xr.Dataset(parts, {"x": np.arange(50.0)}, {"version": number})
-
-
-def versions_in(ds):
-    return {ds.attrs["version"], *(v.attrs["version"] for v in ds.data_vars.values()), *np.unique(ds.to_array())}
-
-
-def names(folder):
-    return sorted(os.listdir(folder))
 
 
 @pytest.fixture(params=[True, False], ids=["exchange", "two renames"])

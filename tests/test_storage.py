@@ -10,6 +10,7 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from versions import names
 
 import beamprop as bp
 
@@ -38,10 +39,6 @@ def datasets():
 @pytest.fixture
 def small():
     return bp.scattering(SLAB, F, kx_over_k0=[0.0, 0.5])
-
-
-def names(folder):
-    return sorted(os.listdir(folder))
 
 
 # --- round trips ------------------------------------------------------------------------------------------

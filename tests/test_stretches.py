@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from oracles import _product
 
 import beamprop as bp
 from beamprop.contour import stretches
@@ -13,6 +12,13 @@ LAMBDA = 2 * np.pi / float(bp.AIR.wavenumber(F).real)
 K0 = 2 * np.pi / LAMBDA
 RHO, BULK = float(np.real(bp.AIR.density)), float(np.real(bp.AIR.bulk_modulus))
 GAUSS = np.polynomial.legendre.leggauss(20)
+
+
+def layer(rho, bulk, d, omega, k):
+    """(n, 2, 2): the state (p, p'/rho) behind a layer from the one in front."""
+    kz = np.sqrt(rho * (omega**2 / bulk - k**2 / rho) + 0j)
+    c, s = np.cos(kz * d), np.sin(kz * d)
+    return np.moveaxis(np.array([[c, rho * s / kz], [-kz * s / rho, c]]), -1, 0)
 
 
 def real_axis_field(layers, periods, after, beam, x, z, edges):
@@ -26,7 +32,10 @@ def real_axis_field(layers, periods, after, beam, x, z, edges):
         return np.where(kz.imag < 0, -kz, kz)
 
     kz1, kz2 = outgoing(RHO, BULK), outgoing(*after)
-    m = np.linalg.matrix_power(_product(layers, omega, k), periods)
+    cell = np.eye(2)
+    for rho, bulk, d in layers:
+        cell = layer(rho, bulk, d, omega, k) @ cell
+    m = np.linalg.matrix_power(cell, periods)
     y1, y2 = 1j * kz1 / RHO, 1j * kz2 / after[0]
     t = 2 * y1 / (y2 * m[:, 0, 0] - m[:, 1, 0] + y1 * (m[:, 1, 1] - y2 * m[:, 0, 1]))
     thickness = periods * sum(d for _, _, d in layers)

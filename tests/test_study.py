@@ -9,10 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
-from accuracy_study import report, terms
+from accuracy_study.study import report, terms
 
 from beamprop.contour import error
 
@@ -41,7 +38,7 @@ def dataset(rows):
     n = len(rows)
     more = {
         "rtol": np.full(n, 1e-6), "kind": np.full(n, "air alone"), "source": np.full(n, "Slits"), "reason": np.full(n, "why"),
-        "truth": np.full(n, ""), "fan": np.zeros(n, bool), "many_planes": np.zeros(n, bool), "seconds": np.ones(n),
+        "truth": np.full(n, ""), "many_angles": np.zeros(n, bool), "many_planes": np.zeros(n, bool), "seconds": np.ones(n),
     }  # fmt: skip
     return xr.Dataset({k: ("case", v) for k, v in {**columns, **more}.items()}, {"case": np.arange(n)})
 
@@ -127,34 +124,60 @@ def test_the_command_runs_one_case_and_one_class():
 
 # --- the study's own walls ----------------------------------------------------------------------------------
 
-STUDY = sorted((ROOT / "experiments" / "accuracy_study").glob("*.py"))
-#: What the package does none of: these see its media and sources, never an answer.
-TRUTH = ("source", "medium", "near_axis", "misplaced", "contour", "bands", "reference")
+STUDY = ROOT / "experiments" / "accuracy_study"
+FILES = {path: ".".join(path.relative_to(STUDY).with_suffix("").parts) for path in sorted(STUDY.rglob("*.py"))}
 #: A file of the study imports only from those before it.
-ORDER = ("slabs", "source", "cases", "hard", "numbering", "medium", "near_axis", "misplaced", "contour", "bands", "reference",
-         "study", "report", "limit", "term_cases", "terms", "command")  # fmt: skip
+ORDER = [
+    "case",
+    *(f"reference.{name}" for name in ("source", "medium", "many_digits", "near_axis", "misplaced", "contour", "bands", "quadrature", "real_axis")),
+    *(f"cases.{name}" for name in ("slabs", "first", "hard", "numbering", "built")),
+    *(f"study.{name}" for name in ("comparison", "report", "limit", "terms", "command")),
+]  # fmt: skip
 
 
-def used(path):
-    """Names that a file takes from beamprop, and the files of the study that it imports."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+def taken_from_the_package(path):
+    """Names that a file takes from beamprop, and the modules inside beamprop that it imports from."""
+    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
     names = {
-        n.attr
-        for n in ast.walk(tree)
-        if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name) and n.value.id == "bp"
+        n.attr for n in nodes if isinstance(n, ast.Attribute) and isinstance(n.value, ast.Name) and n.value.id == "bp"
     }
-    own = {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and n.level}
-    inner = [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom) and (n.module or "").startswith("beamprop")]
-    return names, own, inner
+    modules = [n.module for n in nodes if isinstance(n, ast.ImportFrom) and (n.module or "").startswith("beamprop")]
+    return names, modules
 
 
-@pytest.mark.parametrize("path", STUDY, ids=lambda path: path.stem)
-def test_the_truth_uses_nothing_that_it_judges(path):
-    """Only definitions of media and sources come from the package, through its public names; files are short, one way."""
-    names, own, inner = used(path)
-    assert not inner
-    assert len(path.read_text(encoding="utf-8").splitlines()) <= 350
-    if path.stem in TRUTH:
+def taken_from_the_study(path):
+    """Files of the study that a file imports, by their names in ORDER."""
+    room = FILES[path].split(".")[:-1]
+    imported = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            base = room[: len(room) + 1 - node.level] + (node.module or "").split(".")
+            whole = ".".join(part for part in base if part)
+            imported |= {whole} if whole in ORDER else {f"{whole}.{alias.name}" for alias in node.names}
+    return imported
+
+
+@pytest.mark.parametrize("path", FILES, ids=FILES.get)
+def test_the_reference_uses_nothing_that_it_judges(path):
+    """It sees definitions of media and sources alone, through the package's public names."""
+    names, modules = taken_from_the_package(path)
+    assert not modules
+    if FILES[path] == "case" or FILES[path].startswith("reference."):
         assert names <= {"Slab", "Fluid", "GaussianBeam", "Profile", "Slits"}
-    if path.stem != "__init__":
-        assert own - {""} <= set(ORDER[: ORDER.index(path.stem)])
+
+
+@pytest.mark.parametrize("path", FILES, ids=FILES.get)
+def test_imports_of_the_study_run_one_way(path):
+    """From questions and references to their comparison; and files are short."""
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 350
+    if path.stem == "__init__":
+        assert not taken_from_the_study(path)
+    else:
+        assert taken_from_the_study(path) <= set(ORDER[: ORDER.index(FILES[path])])
+
+
+def test_imports_of_the_study_are_seen():
+    """Those of both kinds, within a folder and across."""
+    of = {name: path for path, name in FILES.items()}
+    assert {"reference.source", "case", "cases.slabs"} <= taken_from_the_study(of["cases.hard"])
+    assert {"study.report", "cases.numbering"} <= taken_from_the_study(of["study.command"])

@@ -1,27 +1,21 @@
 """The accuracy study's own truth, held to what is more independent still: 40 digits, closed forms, real-axis integrals."""
 
-import sys
-from pathlib import Path
+import itertools
 
-import mpmath
 import numpy as np
 import pytest
+from accuracy_study.case import Case
+from accuracy_study.cases import hard
+from accuracy_study.cases.numbering import CASES, make_case, numbers_of
+from accuracy_study.cases.slabs import SLABS
+from accuracy_study.reference import bands, many_digits, quadrature
+from accuracy_study.reference.contour import panels
+from accuracy_study.reference.medium import Medium
+from accuracy_study.reference.near_axis import NearAxis
+from accuracy_study.reference.source import Source
 from scipy.special import hankel1
 
 import beamprop as bp
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
-import itertools
-
-from accuracy_study import bands, hard, reference
-from accuracy_study.cases import Case
-from accuracy_study.contour import panels
-from accuracy_study.medium import Medium
-from accuracy_study.near_axis import NearAxis
-from accuracy_study.numbering import CASES, make_case, numbers_of
-from accuracy_study.slabs import SLABS
-from accuracy_study.source import Source
 
 F = 2500.0
 LAM = 343.0 / F
@@ -34,63 +28,12 @@ def case_of(slab, beam, x, z, kind="uniform fluid", rtol=1e-9):
 
 def truth(case):
     with np.errstate(all="ignore"):
-        found = reference.truth(case, np.zeros(0) + case.beam.centre)
+        found = quadrature.truth(case, np.zeros(0) + case.beam.centre)
     assert not isinstance(found, str), found
     return found
 
 
 # --- the response, by 2x2 matrices with 40 digits ----------------------------------------------------------
-
-
-def exact_response(m, k, z, z0):
-    """p at z of a unit plane wave, by transfer matrices; the half-spaces' roots are those that decay with a trace of loss."""
-    with mpmath.workdps(60):
-        omega, k = mpmath.mpf(m.omega), mpmath.mpmathify(k)
-
-        def root(fluid, lossy):
-            rho, rho_x, K = (mpmath.mpmathify(complex(v)) for v in fluid[:3])
-            kz = mpmath.sqrt(rho * (omega**2 / K - k**2 / rho_x))
-            if not lossy:
-                return rho, kz
-            more = mpmath.mpf(10) ** -30 * 1j
-            loss = mpmath.sqrt(
-                (rho + more * abs(rho)) * (omega**2 / K * (1 + more) - k**2 / (rho_x + more * abs(rho_x)))
-            )
-            loss = loss if loss.imag > 0 else -loss
-            return rho, kz if abs(kz - loss) < abs(kz + loss) else -kz
-
-        layers = [(v, v[3]) for part, n in m.segments for _ in range(n) for v in part]
-        rho2, kz2 = root(m.after, True)
-        state = mpmath.matrix([1, 1j * kz2 / rho2]) if m.wall == np.inf else mpmath.matrix([0, 1])
-        at = mpmath.fsum(mpmath.mpf(d) for _, d in layers)
-        found = {}
-        deepest = at
-        for v, d in reversed(layers):
-            rho, kz = root(v, False)
-            for depth in z:
-                if at - d <= depth < at or depth == deepest:
-                    found[depth] = (step(rho, kz, min(at, deepest) - mpmath.mpf(float(depth))) * state)[0]
-            state = step(rho, kz, mpmath.mpf(d)) * state
-            at -= mpmath.mpf(d)
-        rho1, kz1 = root(m.before, True)
-        y = 1j * kz1 / rho1
-        forward, backward = (state[0] + state[1] / y) / 2, (state[0] - state[1] / y) / 2
-        out = []
-        for depth in z:
-            if depth <= 0:
-                p = forward * mpmath.expj(kz1 * depth) + backward * mpmath.expj(-kz1 * depth)
-            elif depth < deepest:
-                p = found[depth]
-            else:
-                p = mpmath.expj(kz2 * (depth - deepest)) if m.wall == np.inf else mpmath.mpf(0)
-            out.append(complex(p / forward * mpmath.expj(-kz1 * z0)))
-        return np.array(out)
-
-
-def step(rho, kz, d):
-    """From (p, q) at the far face of a layer to the near one."""
-    c, s = mpmath.cos(kz * d), mpmath.sin(kz * d)
-    return mpmath.matrix([[c, -rho * s / kz], [kz * s / rho, c]])
 
 
 #: Classes with too many layers for 40 digits, and one whose response is looked at below.
@@ -109,7 +52,7 @@ def test_responses_to_40_digits(kind):
         z = case.z[:3]
         k = np.array([0.0123, 0.31, 0.97, 1.07, 1.9]) * m.k0
         got = m.response(k + 0j, z, case.beam.z0)
-        want = np.array([exact_response(m, v, z, case.beam.z0) for v in k]).T
+        want = np.array([many_digits.response(m, v, z, case.beam.z0) for v in k]).T
         size = np.maximum(np.abs(want), 1e-3 * np.abs(np.exp(1j * m.kz(m.before, k + 0j) * -case.beam.z0))) + 1e-300
         assert np.max(np.abs(got - want) / size) < 1e-9, number
         done += 1
@@ -126,7 +69,7 @@ def test_series_beside_a_sharp_resonance():
         m = Medium(case.slab, case.frequency)
         near = NearAxis(m, case.z, case.beam.z0)
         k = (0.6 - 0.7j) * near.radius * np.array([1.0, 1e-2, 1e-4, 1e-6, 1e-9])
-        want = np.array([exact_response(m, v, case.z, case.beam.z0) for v in k]).T
+        want = np.array([many_digits.response(m, v, case.z, case.beam.z0) for v in k]).T
         size = np.abs(want).max(axis=1, keepdims=True)
         np.testing.assert_allclose(near.response(k) / size, want / size, atol=1e-11)
         rough = m.response(k, case.z, case.beam.z0)
@@ -168,7 +111,7 @@ def on_the_axis(case, loss, count=1500):
     steps = end * np.geomspace(1e-12, 1, 120)
     edges = np.concatenate([np.linspace(0, end, count), *(p + side * steps for p in points for side in (-1, 1)), steps])
     k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
-    return reference.field_sum(
+    return quadrature.field_sum(
         source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, case.x - case.beam.centre
     )
 
@@ -238,7 +181,7 @@ def test_a_resonance_in_what_a_nearly_soft_layer_lets_through():
     angle, w = panels(np.unique(np.concatenate([[0], np.pi / 2 * 1.05 ** -np.arange(0.0, 500)])))
     k, kz = m.k0 * np.sin(angle) + 0j, m.k0 * np.cos(angle)
     source = Source(beam, m.k0)
-    expected = reference.field_sum(source, lambda kk: m.response(kk, case.z, beam.z0), k, kz * w, kz, case.x)
+    expected = quadrature.field_sum(source, lambda kk: m.response(kk, case.z, beam.z0), k, kz * w, kz, case.x)
     found = truth(case)
     assert np.all(np.abs(found.p - expected).max(axis=1) < 1e-10 * np.abs(expected).max(axis=1))
 

@@ -2,10 +2,9 @@
 
 import os
 
-import numpy as np
 import pytest
-import xarray as xr
 from click.testing import CliRunner
+from versions import names, version, versions_in
 
 import beamprop as bp
 from beamprop.cli import main
@@ -13,20 +12,6 @@ from beamprop.io.storage import whole
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX links and permissions")
 NAMES = ["a.nc", "a.zarr"]
-
-
-def version(number):
-    """A dataset in which every value and attribute tells its version."""
-    parts = {f"v{k}": ("x", np.full(50, float(number)), {"version": number}) for k in range(6)}
-    return xr.Dataset(parts, {"x": np.arange(50.0)}, {"version": number})
-
-
-def versions_in(ds):
-    return {ds.attrs["version"], *(v.attrs["version"] for v in ds.data_vars.values()), *np.unique(ds.to_array())}
-
-
-def names(folder):
-    return sorted(os.listdir(folder))
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sided
+from answers import slab_of
 from scipy.optimize import brentq
 from sided import AIR, BULK, K0, LAM, OMEGA, RHO, F
 
@@ -11,10 +12,6 @@ import beamprop as bp
 SLOW, MIDDLE = (2 * RHO, 2 * RHO * 150.0**2), (1.5 * RHO, 1.5 * RHO * 200.0**2)
 WALL = (0.0, BULK, 0.05 * LAM)
 DENSE = (1.1 * RHO, 1.1 * RHO * 300.0**2)  # a half-space that is slower than air
-
-
-def slab_of(*layers, periods=1, after=AIR):
-    return bp.Slab([bp.Layer(bp.Fluid(rho, K), d) for rho, K, d in layers], periods, after=bp.Fluid(*after))
 
 
 def on_a_wall(medium, d, beside):
@@ -52,10 +49,11 @@ def test_the_part_in_front_of_a_wall_and_the_part_behind(d):
     layer = (*SLOW, d)
     front, behind = on_a_wall(SLOW, d, AIR), on_a_wall(SLOW, d, DENSE)
     assert len(front) == {0.1 * LAM: 0, 0.3 * LAM: 1, 0.9 * LAM: 4}[d]
-    held_to(bp.guided_modes(slab_of(layer, WALL, after=DENSE), F), front)
-    held_to(bp.guided_modes(slab_of(WALL, layer, after=DENSE), F), behind)
-    held_to(bp.guided_modes(slab_of(layer, WALL, layer, after=DENSE), F), front + behind)
-    alike = bp.guided_modes(slab_of(layer, WALL, layer), F)  # not one cluster of two, but two modes known to all digits
+    held_to(bp.guided_modes(slab_of([layer, WALL], after=DENSE), F), front)
+    held_to(bp.guided_modes(slab_of([WALL, layer], after=DENSE), F), behind)
+    held_to(bp.guided_modes(slab_of([layer, WALL, layer], after=DENSE), F), front + behind)
+    # not one cluster of two, but two modes known to all digits
+    alike = bp.guided_modes(slab_of([layer, WALL, layer]), F)
     held_to(alike, front + front)
     assert np.all(alike.direction == 1)
 
@@ -66,10 +64,10 @@ def test_parts_between_walls_are_closed(loss):
     medium, D = sided.lossy(MIDDLE, loss), 1.6 * LAM
     closed = between_walls(medium, D)
     assert min(np.real(closed)) < K0 < max(np.real(closed))
-    held_to(bp.guided_modes(slab_of((*SLOW, 0.3 * LAM), WALL, (*medium, D), WALL, WALL), F),
+    held_to(bp.guided_modes(slab_of([(*SLOW, 0.3 * LAM), WALL, (*medium, D), WALL, WALL]), F),
             closed + on_a_wall(SLOW, 0.3 * LAM, AIR))  # fmt: skip
     # a wall at the end of each period of a cell: the first layer is beside air, the three others between walls
-    ds = bp.guided_modes(slab_of((*SLOW, 0.3 * LAM), WALL, periods=4), F)
+    ds = bp.guided_modes(slab_of([(*SLOW, 0.3 * LAM), WALL], periods=4), F)
     held_to(ds, on_a_wall(SLOW, 0.3 * LAM, AIR) + 3 * between_walls(SLOW, 0.3 * LAM))
 
 
@@ -86,14 +84,14 @@ def test_two_layers_between_walls():
     changes = np.flatnonzero(np.diff(np.sign([relation(k) for k in kx])))
     expected = [brentq(relation, kx[i], kx[i + 1], xtol=1e-13) for i in changes]
     assert len(expected) > 2
-    held_to(bp.guided_modes(slab_of(WALL, (*SLOW, d1), (*MIDDLE, d2), WALL), F), expected)
+    held_to(bp.guided_modes(slab_of([WALL, (*SLOW, d1), (*MIDDLE, d2), WALL]), F), expected)
 
 
 def test_a_backward_mode_in_front_of_a_wall():
     """A thin negative layer on a soft wall: its mode runs against its phase, as the field's contour knows it."""
     layers = [(-0.6 * RHO, 2 * BULK, 0.04 * LAM), (RHO, BULK, 0.1 * LAM)]
     known = sided.modes(layers, None, 340.0)
-    ds = bp.guided_modes(slab_of(*layers, WALL), F, kx_over_k0_max=340.0 / K0)
+    ds = bp.guided_modes(slab_of([*layers, WALL]), F, kx_over_k0_max=340.0 / K0)
     held_to(ds, [k for k, _ in known])
     assert list(ds.direction.values) == [side for _, side in sorted(known)]
     assert -1 in ds.direction
@@ -101,7 +99,7 @@ def test_a_backward_mode_in_front_of_a_wall():
 
 def test_a_wall_alone_guides_nothing():
     """Neither does it at a frequency at which its density passes through 0, with a slab that guides at others."""
-    assert int(bp.guided_modes(slab_of(WALL), F)["count"]) == 0
+    assert int(bp.guided_modes(slab_of([WALL]), F)["count"]) == 0
     crossing = bp.Fluid(lambda f: (f - F) / F * RHO, BULK)
     slab = bp.Slab([bp.Layer(bp.Fluid(*SLOW), 0.3 * LAM), bp.Layer(crossing, 0.05 * LAM)])
     ds = bp.guided_modes(slab, [F - 1e-6, F, F + 1e-6])
@@ -114,4 +112,4 @@ def test_as_many_parts_as_fit_into_memory(monkeypatch):
     """Each period of a cell with a wall has modes of its own: a table of them all may be too large, and is refused by name."""
     monkeypatch.setenv("BEAMPROP_MEMORY", "100M")
     with pytest.raises(ValueError, match=r"^slab: expected a question that fits into .* take fewer periods$"):
-        bp.guided_modes(slab_of((*SLOW, 0.3 * LAM), WALL, periods=10**6), F)
+        bp.guided_modes(slab_of([(*SLOW, 0.3 * LAM), WALL], periods=10**6), F)

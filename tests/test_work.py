@@ -1,11 +1,10 @@
 """How much work a question takes: plane waves, windows and sums are counted, not timed; and what is refused before the work."""
 
 import re
-import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from accuracy_study.study import comparison
 
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
@@ -16,10 +15,6 @@ from beamprop.modes.guided import dispersion_of
 from beamprop.profiles import fwhm, sections
 from beamprop.response.sampled_slab import FluidSlab, sample
 from beamprop.response.transfer_function import through
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "experiments"))
-
-from accuracy_study import study
 
 F = 2500.0
 K0 = float(bp.AIR.wavenumber(F).real)
@@ -252,7 +247,7 @@ def test_in_a_gap_the_faces_modes_do_not_depend_on_the_periods():
 
 def test_a_hundred_thousand_periods_with_gaps_are_answered():
     """A question of the accuracy study that was refused; there it is compared with the truth."""
-    row = study.judge(2331)
+    row = comparison.judge(2331)
     assert row["status"] == "answered"
     assert row["error"] < row["rtol"]
     assert row["estimate"] < row["rtol"]

@@ -1,3 +1,3 @@
-"""The accuracy study: random questions (`slabs`, `cases`, `hard`), an independent truth (`source`, `medium`, `near_axis`,
-`misplaced`, `contour`, `reference`), their comparison (`study`), and what is printed of it (`report`, `limit`, `terms`).
+"""The accuracy study. `case`: a question; `reference`: its field, computed independently of the package; `cases`: random
+questions by number, and questions built for one purpose; `study`: the package compared with the reference, and what is printed.
 """

@@ -34,9 +34,24 @@ def angles() -> object:
     return bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES)
 
 
+def hundred_angles() -> object:
+    """A hundred angles at one plane."""
+    return bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10])
+
+
 def widths() -> object:
     """Widths against frequency."""
     return bp.beam_width(SLAB, BEAM, FREQUENCIES)
+
+
+def coarse_in_z() -> object:
+    """The map on every sixth plane."""
+    return bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6])
+
+
+def coarse_map() -> object:
+    """The map on every sixth plane, at every eighth position."""
+    return bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6])
 
 
 def air() -> object:
@@ -115,15 +130,26 @@ class Step(NamedTuple):
     without: Any
 
 
+def never(*_: object) -> None:
+    """No polynomial, no pair of waves: the plain formula is taken."""
+
+
+def every_angle(beam: Any, angles: np.ndarray, *_: object) -> source_angles.AngleInterpolation:
+    """All angles as they are."""
+    return source_angles.AngleInterpolation(beam, angles)
+
+
+#: More than any number of planes or periods.
+NEVER_SO_MANY = 10**9
 STEPS = [
-    Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", 10**9),
-    Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", 10**9),
-    Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "interpolate_angles", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
-    Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), straight, "fft_is_cheaper", lambda *_: False),
-    Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
-    Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
-    Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),
-]  # fmt: skip
+    Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", NEVER_SO_MANY),
+    Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", NEVER_SO_MANY),
+    Step("angle interpolation", hundred_angles, question, "interpolate_angles", every_angle),
+    Step("straight contours and FFTs where they are cheaper", coarse_in_z, straight, "fft_is_cheaper", lambda *_: False),
+    Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", never),
+    Step("powers of periods by two tables", coarse_map, interior, "TABLE", NEVER_SO_MANY),
+    Step("two waves in a thick layer", air, interior, "_steady", never),
+]
 
 
 @contextlib.contextmanager
@@ -150,16 +176,16 @@ def compare(step: Step, repeats: int) -> tuple[float, float]:
 
 def planes_summed(work: Work) -> int:
     """How many planes stand for all of a map."""
-    found = []
+    approximations = []
     cross = evaluate.cross
 
-    def watched(*given: Any) -> Any:
-        found.append(cross(*given))
-        return found[-1]
+    def watched(*arguments: Any) -> Any:
+        approximations.append(cross(*arguments))
+        return approximations[-1]
 
     with switched_off(Step("", work, evaluate, "cross", watched)):
         work()
-    return max(one.within(2e-12) for one in found)
+    return max(approximation.within(2e-12) for approximation in approximations)
 
 
 def main(repeats: int = 9) -> None:

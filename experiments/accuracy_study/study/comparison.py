@@ -16,9 +16,9 @@ from tqdm import tqdm
 
 import beamprop as bp
 
-from .cases import Case
-from .numbering import fan_of, make_case, map_of
-from .reference import SILENT, Truth, truth
+from ..case import Case
+from ..cases.numbering import angles_of, make_case, map_of
+from ..reference.quadrature import SILENT, Truth, truth
 
 #: A refusal names the argument that asks too much; any other error is a fault of the package.
 REFUSAL = re.compile(r"(slab|before|after|beam|frequency|x|z|rtol|angle|z0|x0): ")
@@ -42,42 +42,42 @@ def answer(case: Case, x: np.ndarray, z: np.ndarray, angles: np.ndarray | None) 
     row["warned"] = any(issubclass(w.category, bp.AccuracyWarning) for w in caught)
     if angles is not None and ds is not None:  # the warning is of the worst angle
         row["warned"] = row["warned"] and float(ds.error_estimate) > case.rtol
-    other = [str(w.message) for w in caught if not issubclass(w.category, bp.AccuracyWarning)]
-    if other and not row["reason"]:
-        row["reason"] = f"warning: {other[0][:80]}"
+    messages = [str(w.message) for w in caught if not issubclass(w.category, bp.AccuracyWarning)]
+    if messages and not row["reason"]:
+        row["reason"] = f"warning: {messages[0][:80]}"
     return ds, row
 
 
 def compared_with(case: Case, estimate: float) -> tuple[Truth | str, np.ndarray]:
     """The truth at some of a fine grid's positions, known well enough to judge an estimate; and which positions."""
-    some = np.unique(np.linspace(0, case.x.size - 1, 61).round().astype(int))
+    positions = np.unique(np.linspace(0, case.x.size - 1, 61).round().astype(int))
     own = case.beam.centre + case.beam.reach(1e-3 * case.rtol) * np.linspace(-1, 1, 41)
     with np.errstate(all="ignore"):
-        return truth(case._replace(x=case.x[some]), own, min(0.1 * case.rtol, 0.3 * estimate)), some
+        return truth(case._replace(x=case.x[positions]), own, min(0.1 * case.rtol, 0.3 * estimate)), positions
 
 
-def error_of(p: np.ndarray, found: Truth) -> tuple[float, float]:
+def error_of(p: np.ndarray, reference: Truth) -> tuple[float, float]:
     """Of the planes that are not dark the worst error over the largest |p|, and how well the truth knows it.
 
     Where p vanishes, a soft wall say, nothing may be there but rounding.
     """
-    seen = found.scale > SILENT
-    error = np.abs(p - found.p).max(axis=1) / np.where(seen, found.scale, np.inf)
+    seen = reference.scale > SILENT
+    error = np.abs(p - reference.p).max(axis=1) / np.where(seen, reference.scale, np.inf)
     error = np.where(np.isfinite(p).all(axis=1), error, np.inf)
-    left = ~found.dark
-    surplus = np.where(left, error - found.error, -np.inf)
+    left = ~reference.dark
+    surplus = np.where(left, error - reference.error, -np.inf)
     worst = int(np.argmax(surplus))
-    return float(error[worst]), float(found.error[worst])
+    return float(error[worst]), float(reference.error[worst])
 
 
 def judge(number: int) -> dict[str, Any]:
     """One case: the package's answer, its promise, and the truth."""
     case = make_case(number)
-    angles = fan_of(number, case)
+    angles = angles_of(number, case)
     x, z = map_of(number, case)
     row: dict[str, Any] = {
         "number": number, "kind": case.kind, "source": case.source, "rtol": case.rtol, "error": np.nan, "estimate": np.nan,
-        "truth_error": np.nan, "wrong": 0, "dark": 0, "truth": "", "fan": angles is not None, "many_planes": z.size > case.z.size,
+        "truth_error": np.nan, "wrong": 0, "dark": 0, "truth": "", "many_angles": angles is not None, "many_planes": z.size > case.z.size,
     }  # fmt: skip
     ds, said = answer(case, x, z, angles)
     row |= said
@@ -85,14 +85,18 @@ def judge(number: int) -> dict[str, Any]:
         return row
     answered = row["status"] == "answered"
     row["estimate"] = float(ds.error_estimate) if answered else np.nan
-    found, some = compared_with(case, row["estimate"] if answered else case.rtol)
-    if isinstance(found, str):
-        row["truth"] = found
-        return row | ({"status": "no truth", "reason": row["reason"] or found} if answered else {})
-    row |= {"wrong": found.wrong, "dark": int(found.dark.sum()), "truth_error": float(found.error[~found.dark].max())}
+    reference, positions = compared_with(case, row["estimate"] if answered else case.rtol)
+    if isinstance(reference, str):
+        row["truth"] = reference
+        return row | ({"status": "no truth", "reason": row["reason"] or reference} if answered else {})
+    row |= {
+        "wrong": reference.wrong,
+        "dark": int(reference.dark.sum()),
+        "truth_error": float(reference.error[~reference.dark].max()),
+    }
     if answered:
-        p = ds.p.values.reshape(z.size, x.size)[np.searchsorted(z, case.z)][:, np.searchsorted(x, case.x)][:, some]
-        row["error"], row["truth_error"] = error_of(p, found)
+        p = ds.p.values.reshape(z.size, x.size)[np.searchsorted(z, case.z)][:, np.searchsorted(x, case.x)][:, positions]
+        row["error"], row["truth_error"] = error_of(p, reference)
     return row
 
 

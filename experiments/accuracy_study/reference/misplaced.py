@@ -63,7 +63,7 @@ def has_negative(m: Medium) -> bool:
 def wrong_side(
     slab: bp.Slab, frequency: float, m: Medium, depth: float, corner: float, band: float
 ) -> list[complex] | None:
-    """Backward modes above the path: their kx; None where they cannot be told.
+    """Backward modes above the contour: their kx; None where they cannot be told.
 
     Counted with a trace of loss where some layer has none, the less the thicker the slab. Where there are any, they are followed
     from a scan.
@@ -93,16 +93,16 @@ def _find_wrong(m: Medium, test: Medium, depth: float, corner: float, band: floa
         s.astype(complex)[1:-1][(v[1:-1] > v[:-2]) & (v[1:-1] > v[2:])]
         for v in (test.log_t(s + 0j).real, test.log_t(s - 0.5j * depth).real)
     ]
-    found: list[tuple[complex, complex]] = []
+    modes: list[tuple[complex, complex]] = []  # with the trace of loss, and as the medium is
     for seed in np.concatenate([seeds[0], seeds[1] - 0.5j * depth]):
         k = _newton(test, seed)
         if k is None or not 0 < -k.imag < depth * min(1.0, k.real / corner) or not 0 < k.real < band:
             continue
-        if all(abs(k - other) > 1e-7 * abs(k) for other, _ in found):
+        if all(abs(k - known) > 1e-7 * abs(k) for known, _ in modes):
             exact = _newton(m, k)
             if exact is not None:
-                found.append((k, exact))
-    return [exact for _, exact in found] if len(found) == count else None
+                modes.append((k, exact))
+    return [exact for _, exact in modes] if len(modes) == count else None
 
 
 def _newton(m: Medium, k: complex) -> complex | None:

@@ -1,4 +1,4 @@
-"""Questions built for single terms of the error estimate, and the truth of those that the study's quadratures do not serve."""
+"""Questions built for single terms of the error estimate."""
 
 from __future__ import annotations
 
@@ -6,18 +6,14 @@ import itertools
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import mpmath as mp
 import numpy as np
 
 import beamprop as bp
 
-from .cases import Case
-from .contour import panels
-from .medium import Medium
+from ..case import Case
+from ..reference.real_axis import LAUNCHED, STEPPED
 from .numbering import numbers_of
-from .reference import EPS, Truth, field_sum
 from .slabs import C_AIR
-from .source import Source
 
 
 def _built(slab: bp.Slab, beam: object, x: np.ndarray, z: list[float], rtol: float, frequency: float = 2500.0) -> Case:
@@ -29,40 +25,6 @@ class Among(NamedTuple):
 
     case: Case
     angles: np.ndarray  #: degree, that of the case's beam among them
-
-
-#: Kinds of built questions with a truth of their own: a spectrum that ends in a step, which no contour but the real axis serves;
-#: and a profile at its samples on its launch plane, where what is launched is the field.
-STEPPED, LAUNCHED = "stepped", "as launched"
-
-
-def on_the_axis(case: Case) -> Truth:
-    """The truth of a question without guided modes, by panels on the real axis, graded to 0, its branch points and ends."""
-    m = Medium(case.slab, case.frequency)
-    source = Source(case.beam, m.k0)
-    end, fields = source.band(1e-17), []
-    for count in (300, 450):
-        steps = end * np.geomspace(1e-13, 1, 200)
-        near = [b + side * steps for b in (0.0, *m.branches()) for side in (-1, 1)]
-        edges = np.concatenate([np.linspace(0, end, count), *near])
-        k, w = panels(np.unique(edges[(edges >= 0) & (edges <= end)]))
-        x = case.x - case.beam.centre
-        fields.append(field_sum(source, lambda kk: m.response(kk, case.z, case.beam.z0), k + 0j, w + 0j, None, x))
-    scale = np.abs(fields[1]).max(axis=1)
-    error = np.abs(fields[1] - fields[0]).max(axis=1) / scale
-    return Truth(fields[1], scale, error, np.zeros(scale.size, bool), 0)
-
-
-def as_launched(case: Case) -> Truth:
-    """p exp(i k0 sin(angle) x) at samples of a profile about x = 0, its phases in 40 digits."""
-    beam = case.beam
-    rho, _, K = (float(complex(v[0]).real) for v in case.slab.before.at(np.array([case.frequency])))
-    with mp.workdps(40):
-        k0 = 2 * mp.pi * mp.mpf(case.frequency) * mp.sqrt(mp.mpf(rho) / mp.mpf(K))
-        tilt = k0 * mp.sin(mp.radians(mp.mpf(beam.angle)))
-        turn = np.array([complex(mp.expj(tilt * mp.mpf(float(x)))) for x in case.x])
-    p = (beam.p[np.searchsorted(beam.x, case.x)] * turn)[None]
-    return Truth(p, np.abs(p).max(axis=1), np.array([EPS]), np.zeros(1, bool), 0)
 
 
 def coarse_profiles() -> Iterator[Among]:
@@ -152,5 +114,6 @@ def tilted_plateaus() -> Iterator[Case]:
         yield _built(slab, beam, beam.x[27:134:3], [0.0], 1e-12, frequency)._replace(kind=LAUNCHED)
 
 
-def some(kind: str, count: int = 12) -> tuple[int, ...]:
+def first_numbers(kind: str, count: int) -> tuple[int, ...]:
+    """The first `count` cases of a class."""
     return tuple(itertools.islice(numbers_of(kind), count))

@@ -29,7 +29,7 @@ def fluid_like_air(rng: np.random.Generator, rho: float, K: float, loss: float =
     return bp.Fluid(RHO_AIR * (rho + 1j * loss * abs(rho)), air * (K - 1j * loss * abs(K)), **more)
 
 
-def some_loss(rng: np.random.Generator) -> float:
+def random_loss(rng: np.random.Generator) -> float:
     return log_uniform(rng, 1e-4, 0.3) if rng.random() < 0.5 else 0.0
 
 
@@ -42,7 +42,7 @@ def _lmmd_lossy(rng: np.random.Generator, lam: float) -> bp.Slab:
 
 
 def _positive(rng: np.random.Generator, lam: float) -> bp.Slab:
-    fluid = fluid_like_air(rng, log_uniform(rng, 0.05, 20), log_uniform(rng, 0.2, 20), some_loss(rng))
+    fluid = fluid_like_air(rng, log_uniform(rng, 0.05, 20), log_uniform(rng, 0.2, 20), random_loss(rng))
     return bp.Slab.uniform(fluid, lam * log_uniform(rng, 0.01, 10))
 
 
@@ -52,7 +52,7 @@ def _negative(rng: np.random.Generator, lam: float) -> bp.Slab:
         if rng.random() < 0.6
         else (log_uniform(rng, 0.1, 5), -log_uniform(rng, 0.2, 5))
     )
-    return bp.Slab.uniform(fluid_like_air(rng, rho, K, some_loss(rng)), lam * log_uniform(rng, 0.02, 2))
+    return bp.Slab.uniform(fluid_like_air(rng, rho, K, random_loss(rng)), lam * log_uniform(rng, 0.02, 2))
 
 
 def _double_negative(rng: np.random.Generator, lam: float) -> bp.Slab:
@@ -67,7 +67,7 @@ def _double_negative(rng: np.random.Generator, lam: float) -> bp.Slab:
 
 def _rigid_x(rng: np.random.Generator, lam: float) -> bp.Slab:
     return bp.Slab.uniform(
-        fluid_like_air(rng, log_uniform(rng, 0.1, 3), 1.0, some_loss(rng), density_x=np.inf),
+        fluid_like_air(rng, log_uniform(rng, 0.1, 3), 1.0, random_loss(rng), density_x=np.inf),
         lam * log_uniform(rng, 0.1, 10),
     )
 
@@ -98,7 +98,9 @@ def _lossy_behind(rng: np.random.Generator, lam: float) -> bp.Slab:
 def _opaque(rng: np.random.Generator, lam: float) -> bp.Slab:
     if rng.random() < 0.5:
         return bp.Slab(bp.lmmd_cell(0.05 + 0.5j, 0.25), int(log_uniform(rng, 500, 20_000)))
-    return bp.Slab.uniform(fluid_like_air(rng, -log_uniform(rng, 1, 20), 1.0, some_loss(rng)), lam * rng.uniform(1, 30))
+    return bp.Slab.uniform(
+        fluid_like_air(rng, -log_uniform(rng, 1, 20), 1.0, random_loss(rng)), lam * rng.uniform(1, 30)
+    )
 
 
 def _stack(rng: np.random.Generator, lam: float) -> bp.Slab:

@@ -9,10 +9,10 @@ from pathlib import Path
 import xarray as xr
 from common import save_all, table
 
+from ..cases.numbering import CASES, KINDS, numbers_of, quick_numbers
 from . import report
+from .comparison import study
 from .limit import limit_table, limiting_absorption
-from .numbering import CASES, KINDS, numbers_of, quick_numbers
-from .study import study
 from .terms import term_table
 
 
@@ -41,8 +41,8 @@ def arguments(text: str) -> argparse.Namespace:
 def chosen(options: argparse.Namespace) -> list[int]:
     """Numbers of the cases of the classes asked for, and those asked for by number."""
     kinds = KINDS if "all" in (options.kind or []) else options.kind or []
-    some = (itertools.islice(numbers_of(kind), options.skip, options.skip + options.count) for kind in kinds)
-    return [*itertools.chain(*some), *(options.case or [])]
+    of_each = (itertools.islice(numbers_of(kind), options.skip, options.skip + options.count) for kind in kinds)
+    return [*itertools.chain(*of_each), *(options.case or [])]
 
 
 def main(text: str) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 import mpmath
 import numpy as np
 
+from .many_digits import kz_of, states
 from .medium import Medium
 
 #: Digits, and terms of the series.
@@ -38,8 +39,8 @@ class NearAxis:
             circle = [mpmath.expjpi(2 * mpmath.mpf(j) / TERMS) for j in range(TERMS)]
             values = [_waves(m, layers, z[self.inside], mpmath.mpf(self.scale) ** 2 * c) for c in circle]
             self.series = np.array([_coefficients(list(row), circle) for row in zip(*values, strict=True)])
-        some = self.series[0, :9]
-        roots = np.abs(np.roots(some[::-1] / np.abs(some).max()))
+        leading = self.series[0, :9]
+        roots = np.abs(np.roots(leading[::-1] / np.abs(leading).max()))
         #: |kx| of the pole nearest to 0.
         self.smallest = float(self.scale * np.sqrt(min([r for r in roots if r > 0], default=1.0)))
 
@@ -68,30 +69,10 @@ def _coefficients(values: list[Any], circle: list[Any]) -> np.ndarray:
     )
 
 
-def _root(fluid: tuple, omega: Any, u: Any) -> Any:
-    rho_z, rho_x, K = (mpmath.mpmathify(v) for v in fluid[:3])
-    return mpmath.sqrt(rho_z * (omega**2 / K - u / rho_x))
-
-
-def _step(state: tuple, fluid: tuple, d: Any, omega: Any, u: Any) -> tuple:
-    """The state (p, q) at distance d in front of where it is known."""
-    rho, kz = mpmath.mpmathify(fluid[0]), _root(fluid, omega, u)
-    c, s = mpmath.cos(kz * d), mpmath.sin(kz * d)
-    return state[0] * c - state[1] * rho * s / kz, state[0] * kz * s / rho + state[1] * c
-
-
 def _waves(m: Medium, layers: list, z: np.ndarray, u: Any) -> list[Any]:
-    """Forward and backward wave at the near face, and p at planes inside, at one u."""
+    """Forward and backward wave at the near face, and p at planes inside, at one u = kx^2."""
     omega = mpmath.mpf(m.omega)
-    state = (mpmath.mpf(1), 1j * _root(m.after, omega, u) / mpmath.mpmathify(m.after[0]))
-    faces = [mpmath.mpf(0)]
-    for v in layers:
-        faces.append(faces[-1] + mpmath.mpf(v[3]))
-    of_layer = np.clip(np.searchsorted([float(f) for f in faces], z, side="right") - 1, 0, len(layers) - 1)
-    inside: dict[int, Any] = {}
-    for n in reversed(range(len(layers))):
-        for i in np.flatnonzero(of_layer == n):
-            inside[int(i)] = _step(state, layers[n], faces[n + 1] - mpmath.mpf(z[i]), omega, u)[0]
-        state = _step(state, layers[n], mpmath.mpf(layers[n][3]), omega, u)
-    y = 1j * _root(m.before, omega, u) / mpmath.mpmathify(m.before[0])
-    return [(state[0] + state[1] / y) / 2, (state[0] - state[1] / y) / 2, *(inside[i] for i in range(z.size))]
+    far = mpmath.matrix([1, 1j * kz_of(m.after, omega, u) / mpmath.mpmathify(m.after[0])])
+    (p, q), inside = states(layers, far, z, omega, u)
+    y = 1j * kz_of(m.before, omega, u) / mpmath.mpmathify(m.before[0])
+    return [(p + q / y) / 2, (p - q / y) / 2, *(inside[i] for i in range(z.size))]

@@ -1,15 +1,16 @@
-"""One question of the study: its beam, grid and planes; the same on every machine."""
+"""The first fifteen classes of questions: beam, grid and planes drawn by number, the same on every machine."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 import beamprop as bp
 
+from ..case import Case
+from ..reference.source import Source
 from .slabs import C_AIR, SLABS, WATER, log_uniform
-from .source import Source
 
 SEED = 20240607
 #: Cases of the first fifteen classes: their numbers are 0 ... FIRST - 1.
@@ -18,19 +19,6 @@ SOURCES = ("Gaussian, launch", "Gaussian, rotated", "Profile", "Slits")
 
 
 # --- beams and grids --------------------------------------------------------------------------------------
-
-
-class Case(NamedTuple):
-    """One question, and what it belongs to."""
-
-    kind: str
-    source: str
-    slab: bp.Slab
-    beam: Any
-    frequency: float
-    x: np.ndarray
-    z: np.ndarray
-    rtol: float
 
 
 def draw_angle(rng: np.random.Generator) -> float:

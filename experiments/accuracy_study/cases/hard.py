@@ -10,9 +10,10 @@ import numpy as np
 
 import beamprop as bp
 
-from .cases import SEED, SOURCES, Case, draw_beam, draw_grid, draw_planes
-from .slabs import C_AIR, RHO_AIR, SLABS, WATER, fluid_like_air, log_uniform, modulated_cell, some_loss
-from .source import Source
+from ..case import Case
+from ..reference.source import Source
+from .first import SEED, SOURCES, draw_beam, draw_grid, draw_planes
+from .slabs import C_AIR, RHO_AIR, SLABS, WATER, fluid_like_air, log_uniform, modulated_cell, random_loss
 
 Rng = np.random.Generator
 STEEL = bp.Fluid.from_speed(7800.0, 5900.0)
@@ -127,7 +128,7 @@ def _before_density_zero(rng: Rng, kind: str) -> Case:
     f, lam = draw_frequency(rng)
     rho, K = -log_uniform(rng, 0.1, 5), log_uniform(rng, 0.2, 5)
     rho, K = (rho, K) if rng.random() < 0.7 else (-rho, -K)
-    negative = bp.Layer(fluid_like_air(rng, rho, K, some_loss(rng)), lam * log_uniform(rng, 0.02, 0.5))
+    negative = bp.Layer(fluid_like_air(rng, rho, K, random_loss(rng)), lam * log_uniform(rng, 0.02, 0.5))
     if rng.random() < 0.5:  # thin and light: it guides a backward wave
         fluid = fluid_like_air(rng, -rng.uniform(0.2, 1.0), log_uniform(rng, 0.5, 3), 0.0)
         negative = bp.Layer(fluid, lam * log_uniform(rng, 0.01, 0.15))
@@ -169,10 +170,10 @@ def _band_edge(rng: Rng, kind: str) -> Case:
     """Planes in and behind an opaque periodic mirror near an edge of its stop band."""
     f, lam = draw_frequency(rng)
     contrast = log_uniform(rng, 1.5, 10)
-    loss = some_loss(rng) * 1e-2
-    other = fluid_like_air(rng, contrast, 1 / contrast if rng.random() < 0.5 else 1.0, loss)
-    cell = [bp.Layer(bp.AIR, lam / 4), bp.Layer(other, math.pi / 2 / float(other.wavenumber(f).real))]
-    impedance = math.sqrt(abs(complex(other.density) * complex(other.bulk_modulus))) / (RHO_AIR * C_AIR)  # type: ignore
+    loss = random_loss(rng) * 1e-2
+    hard = fluid_like_air(rng, contrast, 1 / contrast if rng.random() < 0.5 else 1.0, loss)
+    cell = [bp.Layer(bp.AIR, lam / 4), bp.Layer(hard, math.pi / 2 / float(hard.wavenumber(f).real))]
+    impedance = math.sqrt(abs(complex(hard.density) * complex(hard.bulk_modulus))) / (RHO_AIR * C_AIR)  # type: ignore
     half = (
         2 / math.pi * math.asin(abs(impedance - 1) / (impedance + 1))
     )  # half the width of the stop band, over its middle

@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 from common import Statement
 
-from .cases import SOURCES
-from .numbering import KINDS
+from ..cases.first import SOURCES
+from ..cases.numbering import KINDS
 
 #: A warning is needless where the field is right to a third of rtol.
 NEEDLESS = 1 / 3
@@ -50,7 +50,7 @@ def class_table(ds: xr.Dataset) -> str:
     ]
     v = verdicts(ds)
     groups = [(k, ds.kind.values == k) for k in KINDS] + [(k, ds.source.values == k) for k in SOURCES]
-    groups.append(("one of 40 or 150 angles", ds.fan.values.astype(bool)))
+    groups.append(("one of 40 or 150 angles", ds.many_angles.values.astype(bool)))
     groups.append(("in a map of 250 planes and more", ds.many_planes.values.astype(bool)))
     for name, rows in [*groups, ("all", np.ones(ds.sizes["case"], bool))]:
         if not rows.any():
@@ -155,7 +155,7 @@ def statements(ds: xr.Dataset, apart: np.ndarray) -> list[Statement]:
         )
     )
     rates = apart[:-1] / apart[1:]
-    found = f"ten times less loss, {rates[2:].min():.3f} to {rates[2:].max():.3f} times nearer below 1e-4"
+    computed = f"ten times less loss, {rates[2:].min():.3f} to {rates[2:].max():.3f} times nearer below 1e-4"
     holds = bool(np.all(np.abs(rates[2:] - 10) < 0.2))
-    rows.append(Statement("accuracy", "vanishing loss tends to the lossless field, linearly", found, holds))
+    rows.append(Statement("accuracy", "vanishing loss tends to the lossless field, linearly", computed, holds))
     return rows

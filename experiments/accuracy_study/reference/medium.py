@@ -74,8 +74,8 @@ class Medium:
     def branch_points(self) -> list[complex]:
         """One of each pair +-b of branch points that the field knows: those of the half-spaces that it reaches."""
         seen = (self.before,) if self.wall < math.inf else (self.before, self.after)
-        found = [self.omega * np.sqrt(complex(f[1] / f[2])) for f in seen if np.isfinite(f[1])]
-        return [b for b in found if b != 0]
+        points = [self.omega * np.sqrt(complex(f[1] / f[2])) for f in seen if np.isfinite(f[1])]
+        return [b for b in points if b != 0]
 
     def branches(self) -> list[float]:
         """|kx| of the branch points near the real axis: where waves turn evanescent."""

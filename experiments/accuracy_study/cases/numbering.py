@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .cases import FIRST, SEED, Case, first_case
+from ..case import Case
+from .first import FIRST, SEED, first_case
 from .hard import HARD, hard_case
 from .slabs import SLABS
 
@@ -45,7 +46,7 @@ def quick_numbers() -> list[int]:
     return [*range(60), *range(FIRST, FIRST + 2 * len(HARD))]
 
 
-def fan_of(number: int, case: Case) -> np.ndarray | None:
+def angles_of(number: int, case: Case) -> np.ndarray | None:
     """For one case in seven: 40 or 150 angles among which its own is asked for."""
     if number % 7 or getattr(case.beam, "form", "launch") == "rotated" or (number >= FIRST and is_large(case)):
         return None

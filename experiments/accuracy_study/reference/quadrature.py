@@ -14,8 +14,8 @@ import numpy as np
 
 import beamprop as bp
 
+from ..case import Case
 from .bands import Tent, sided_nodes, stretches
-from .cases import Case
 from .contour import Contour, Grading, bent_nodes, panels, real_nodes
 from .medium import Medium
 from .misplaced import is_lossless, wrong_side
@@ -262,8 +262,8 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
         if before is None or bright is None:
             before, bright = p, _bright(s, k, w, kz, p)
             continue
-        found = _agreement(s, p, before, elsewhere, bright, len(wrong))
-        best = found if best is None or _worst(found) < _worst(best) else best
+        agreed = _agreement(s, p, before, elsewhere, bright, len(wrong))
+        best = agreed if best is None or _worst(agreed) < _worst(best) else best
         before, why = p, f"no two quadratures agree: {_worst(best):.0e} at rtol {case.rtol:.0e}"
         if _worst(best) < max(goal, 1e-13):
             break

@@ -17,27 +17,24 @@ import numpy as np
 
 import beamprop as bp
 
-from .cases import Case
-from .numbering import fan_of, make_case, map_of
-from .reference import Truth
-from .study import compared_with, error_of
-from .term_cases import (
+from ..case import Case
+from ..cases.built import (
     BLACK,
     CANCELLED,
     FAR,
-    LAUNCHED,
     MIXED,
     SHADOW,
-    STEPPED,
     WALL,
     Among,
-    as_launched,
     coarse_profiles,
     cones,
-    on_the_axis,
-    some,
+    first_numbers,
     tilted_plateaus,
 )
+from ..cases.numbering import angles_of, make_case, map_of
+from ..reference.quadrature import Truth
+from ..reference.real_axis import LAUNCHED, STEPPED, as_launched, on_the_axis
+from .comparison import compared_with, error_of
 
 
 class Term(NamedTuple):
@@ -103,7 +100,7 @@ TERMS = [
     Term("rounding of long phases", "contour.error", "terms_by_plane", term_of_budget("long_phases"), tuple(tilted_plateaus())),
     Term(
         "second response moved in its last bits", "contour.error", "sampled", _not_moved,
-        (*some("sharp resonances", 20), *some("LMMD, 1 or 100 000 periods", 20)),
+        (*first_numbers("sharp resonances", 20), *first_numbers("LMMD, 1 or 100 000 periods", 20)),
     ),
     Term("brightness outside the window", "contour.error", "_largest", _no_peaks_outside, (FAR,), False),
     Term("planes too dark to be seen", "contour.error", "DARK", lambda _: -1.0, (SHADOW, BLACK), False),
@@ -123,7 +120,7 @@ def switched_off(term: Term) -> Iterator[None]:
         setattr(module, term.attribute, kept)
 
 
-class Found(NamedTuple):
+class Evidence(NamedTuple):
     """What a question says of a term."""
 
     number: object
@@ -145,7 +142,7 @@ class _Question(NamedTuple):
 def _question(candidate: object) -> _Question:
     if isinstance(candidate, int):
         case = make_case(candidate)
-        return _Question(case, *map_of(candidate, case), fan_of(candidate, case))
+        return _Question(case, *map_of(candidate, case), angles_of(candidate, case))
     if isinstance(candidate, Among):
         return _Question(candidate.case, candidate.case.x, candidate.case.z, candidate.angles)
     assert isinstance(candidate, Case)
@@ -176,7 +173,7 @@ def _estimate(question: _Question) -> tuple[np.ndarray, float] | None:
     return p, float(ds.error_estimate)
 
 
-def tried(term: Term, candidate: object) -> Found | None:
+def tried(term: Term, candidate: object) -> Evidence | None:
     """One question with and without a term; None where there is no truth or no answer."""
     question = _question(candidate)
     case = question.case
@@ -185,35 +182,37 @@ def tried(term: Term, candidate: object) -> Found | None:
         without = _estimate(question)
     label = candidate if isinstance(candidate, int) else "built"
     if whole is not None and without is None and not term.larger:  # what is answered, is refused without it
-        return Found(label, np.nan, whole[1], np.inf, whole[1] <= case.rtol)
+        return Evidence(label, np.nan, whole[1], np.inf, whole[1] <= case.rtol)
     if whole is None or without is None:
         return None
     if term.larger and whole[1] <= case.rtol < without[1]:  # the search needs it
-        return Found(label, np.nan, whole[1], without[1], True)
+        return Evidence(label, np.nan, whole[1], without[1], True)
     if term.larger and without[1] > 0.9 * whole[1]:
         return None
-    truth, some = _truth(case, max(without[1], 1e-16))
+    truth, positions = _truth(case, max(without[1], 1e-16))
     if isinstance(truth, str):
         return None
-    error, unknown = error_of(without[0][:, some], truth)
+    error, unknown = error_of(without[0][:, positions], truth)
     if term.larger:
         needed = error - unknown > 3 * max(without[1], unknown)
     else:
         needed = error + unknown < case.rtol / 3 and not without[1] <= case.rtol
-    return Found(label, error, whole[1], without[1], needed)
+    return Evidence(label, error, whole[1], without[1], needed)
 
 
-def decided(term: Term, candidates: Iterable[object] | None = None) -> Found | None:
+def decided(term: Term, candidates: Iterable[object] | None = None) -> Evidence | None:
     """The first question that needs a term, or the one that came nearest; None where no question was changed by it."""
-    nearest: Found | None = None
+    nearest: Evidence | None = None
     for candidate in term.candidates if candidates is None else candidates:
-        found = tried(term, candidate)
-        if found is None:
+        evidence = tried(term, candidate)
+        if evidence is None:
             continue
-        if found.needed:
-            return found
-        if nearest is None or found.error / max(found.without, 1e-17) > nearest.error / max(nearest.without, 1e-17):
-            nearest = found
+        if evidence.needed:
+            return evidence
+        if nearest is None or evidence.error / max(evidence.without, 1e-17) > nearest.error / max(
+            nearest.without, 1e-17
+        ):
+            nearest = evidence
     return nearest
 
 
@@ -221,12 +220,12 @@ def term_table() -> str:
     """Every term, and the question that needs it."""
     lines = ["| term | case | true error | estimate | without it | needed |", "|---" * 6 + "|"]
     for term in TERMS:
-        found = decided(term)
-        if found is None:
+        evidence = decided(term)
+        if evidence is None:
             lines.append(f"| {term.name} | none changed | | | | NO |")
             continue
-        says = "yes" if found.needed else "not shown"
+        says = "yes" if evidence.needed else "not shown"
         lines.append(
-            f"| {term.name} | {found.number} | {found.error:.1e} | {found.estimate:.1e} | {found.without:.1e} | {says} |"
+            f"| {term.name} | {evidence.number} | {evidence.error:.1e} | {evidence.estimate:.1e} | {evidence.without:.1e} | {says} |"
         )
     return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""The field of a case from nothing of the package but the definitions of the slab and the source."""
