@@ -17,7 +17,7 @@ from pathlib import Path
 import xarray as xr
 
 from ... import validate
-from ...conventions import label
+from ..labels import label
 from .blocked import BlockedVariable, Blocks
 from .parts import joined, split
 from .settled import read_settled
