@@ -12,7 +12,7 @@ from beamprop.contour import choose as contour_choice
 from beamprop.contour import error_estimate, paths
 from beamprop.fields import evaluate, low_rank
 from beamprop.media.structures import layer_values
-from beamprop.profiles import sections
+from beamprop.profiles import many_frequencies
 from beamprop.response import cell as cell_kernels
 from beamprop.response import interior, recursion, sampled_slab
 from beamprop.response import layer as one
@@ -423,23 +423,18 @@ def random_modes(rng):
     n = int(rng.integers(1, 60))
     k = ds[:, None] * (first + np.arange(n)) - 1j * sigma[:, None]
     right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
-    return sections.PlaneWaves(paths.Contour(k, np.ones(k.shape), ds, first, sigma), right, left)
+    return many_frequencies.PlaneWaves(paths.Contour(k, np.ones(k.shape), ds, first, sigma), right, left)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_profile_and_its_slopes(seed):
+def test_a_profile_at_any_position(seed):
+    """By tables of exponentials, and by the sum over plane waves."""
     rng = np.random.default_rng(seed)
-    modal, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
-    k = modal.contour.k[:, None]
-    a = modal.right[:, None] * np.exp(1j * k * x[..., None])
-    b = modal.left[:, None] * np.exp(-1j * k * x[..., None])
-    wanted = ((a + b).sum(-1), (1j * k * (a - b)).sum(-1), (-k * k * (a + b)).sum(-1))
-    for order in range(3):
-        found = modal.at(x, modal.slopes(order))
-        assert len(found) == order + 1
-        for one_found, want in zip(found, wanted, strict=False):
-            close(one_found, want)
-    close(modal.value(x), wanted[0])
+    plane_waves, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
+    k = plane_waves.contour.k[:, None]
+    right = plane_waves.right[:, None] * np.exp(1j * k * x[..., None])
+    left = plane_waves.left[:, None] * np.exp(-1j * k * x[..., None])
+    close(plane_waves.evaluator()(x), (right + left).sum(-1))
 
 
 # --- many angles ------------------------------------------------------------------------------------------

@@ -73,10 +73,10 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
     "`beam_width`, 101 frequencies": (
         widths,
         {
-            "windows, by stationary phase": ("profiles/sections.py", "landing"),
-            "poles on the wrong side": ("profiles/sections.py", "_backward"),
-            "contours and their response": ("profiles/sections.py", "_both_modes"),
-            "samples, peak, edges": ("profiles/sections.py", "_measured"),
+            "windows, by stationary phase": ("profiles/landing.py", "landing"),
+            "poles on the wrong side": ("profiles/many_frequencies.py", "_backward"),
+            "contours and their response": ("profiles/many_frequencies.py", "_both_contours"),
+            "samples, peak, edges": ("profiles/many_frequencies.py", "_measured"),
         },
     ),
 }
