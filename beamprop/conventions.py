@@ -1,4 +1,4 @@
-"""The conventions, in one place: signs, the one square root with a branch, names and units.
+"""The conventions, in one place: signs, units, and the one square root with a branch.
 
 * Time dependence ``exp(-i w t)``. A passive fluid has ``Im(density) >= 0`` and ``Im(bulk_modulus) <= 0``;
   an outgoing wave along +z is ``exp(+i kz z)`` with ``Im(kz) >= 0``.
@@ -15,58 +15,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-
-#: Every variable and coordinate of every dataset: (units, long name).
-LABELS: dict[str, tuple[str, str]] = {
-    "frequency": ("Hz", "frequency"),
-    "angle": ("degree", "angle of incidence from the normal"),
-    "x": ("m", "lateral position"),
-    "z": ("m", "depth from the near face"),
-    "kx": ("rad/m", "lateral wavenumber"),
-    "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),
-    "kz": ("rad/m", "Bloch wavenumber"),
-    "kz_over_k0": ("1", "Bloch wavenumber over that of the medium in front"),
-    "mode": ("1", "number of the guided mode"),
-    "direction": ("1", "energy along (+1) or against (-1) the phase, laterally; 0 where there is no mode"),
-    "residual": ("1", "last step of the refinement over kx"),
-    "count": ("1", "number of modes by the argument principle"),
-    "side": ("1", "reflected beam at the near face, or transmitted beam at the far face"),
-    "fwhm": ("m", "full width at half maximum of |p|"),
-    "width_1e2": ("m", "full width at 1/e^2 of the largest |p|^2"),
-    "width_second_moment": ("m", "four standard deviations of |p|^2"),
-    "centroid": ("m", "centroid of |p|^2"),
-    "lateral_shift": ("m", "centroid less the geometric ray"),
-    "peak": ("Pa", "largest |p|"),
-    "power": ("1", "share of the launched power that radiates"),
-    "divergence": ("degree", "far-field half-angle, two standard deviations of the power's direction"),
-    "far_angle": ("degree", "mean direction of the radiated power"),
-    "crossings": ("1", "how often |p| crosses the half level inside the window"),
-    "moments_from": ("m", "begin of the interval of centroid and second moment"),
-    "moments_to": ("m", "end of the interval of centroid and second moment"),
-    "rim": ("1", "larger |p| at the ends of that interval over the peak"),
-    "r": ("1", "complex pressure reflection coefficient"),
-    "t": ("1", "complex pressure transmission coefficient"),
-    "reflectivity": ("1", "reflectivity |r|^2"),
-    "transmissivity": ("1", "transmissivity |t|^2"),
-    "energy_transmission": ("1", "transmitted share of the incident power"),
-    "absorption": ("1", "absorbed share of the incident power"),
-    "p": ("Pa", "complex sound pressure, exp(-i w t)"),
-    "error_estimate": ("1", "estimated relative error: of a field, over the largest |p| of the plane"),
-    "r_error_estimate": ("1", "estimated error of r over the larger of |r| and 1"),
-    "t_error_estimate": ("1", "estimated error of t over |t|"),
-    "fwhm_launch": ("m", "full width at half maximum at the launch plane"),
-    "fwhm_in": ("m", "full width at half maximum of the incident beam at the near face"),
-    "fwhm_out": ("m", "full width at half maximum at the far face"),
-    "fwhm_air": ("m", "full width at half maximum after the comparison distance without a slab"),
-    "peak_out": ("Pa", "largest |p| at the far face"),
-    "centroid_out": ("m", "centroid of |p|^2 at the far face"),
-}
-
-
-def label(name: str) -> dict[str, str]:
-    """Attributes (units, long_name) of a variable or coordinate."""
-    units, long_name = LABELS[name]
-    return {"units": units, "long_name": long_name}
 
 
 def branch_wavenumber(omega: Any, rho_x: Any, bulk_modulus: Any) -> np.ndarray:

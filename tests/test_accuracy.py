@@ -9,7 +9,7 @@ import pytest
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
 from beamprop.contour import paths, survey
-from beamprop.profiles import sections
+from beamprop.profiles import many_frequencies, routes
 from beamprop.response import sampled_slab, transfer_function
 from beamprop.sources import angles
 
@@ -224,7 +224,7 @@ def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
 
     monkeypatch.setattr(contour_choice, "choose_contour", worse)
     monkeypatch.setattr(
-        sections, "_measured", lambda first, *_: (sections.Measures(*5 * [np.zeros(1)]), np.zeros(1, bool))
+        many_frequencies, "_measured", lambda first, *_: (routes.Measures(*5 * [np.zeros(1)]), np.zeros(1, bool))
     )
     with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-04 .* above the asked rtol 1\.0e-07"):
         ask(bp.Slab(bp.lmmd_cell(), 20), bp.GaussianBeam(0.2), F, rtol=1e-7)

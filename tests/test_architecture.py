@@ -53,10 +53,10 @@ ONLY = {
     "contour": {"arrays", "memory", "response", "sources", "modes"},
     "fields": {"arrays", "media", "response", "sources", "contour"},
     "profiles": {"arrays", "memory", "response", "sources", "modes", "contour", "fields"},
-    "io": {"conventions", "memory", "validate", "media", "sources"},
+    "io": {"memory", "validate", "media", "sources"},
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
-    "comparison": {"conventions", "validate", "profiles", "io"},
-    "plot": {"conventions", "validate"},
+    "comparison": {"validate", "profiles", "io"},
+    "plot": {"validate"},
     "parameters": {"memory", "validate", "media", "sources"},
 }
 

@@ -10,7 +10,7 @@ import beamprop as bp
 from beamprop.arrays import fft, matmul
 from beamprop.contour import error as contour_error
 from beamprop.contour import paths, sums
-from beamprop.profiles import sections
+from beamprop.profiles import many_frequencies
 from beamprop.response import reference
 from beamprop.sources import angles as source_angles
 
@@ -122,29 +122,18 @@ def random_modes(rng):
     n = int(rng.integers(1, 60))
     k = ds[:, None] * (first + np.arange(n)) - 1j * sigma[:, None]
     right, left = (rng.normal(size=k.shape) + 1j * rng.normal(size=k.shape) for _ in range(2))
-    return sections.PlaneWaves(paths.Contour(k, np.ones(k.shape), ds, first, sigma), right, left)
+    return many_frequencies.PlaneWaves(paths.Contour(k, np.ones(k.shape), ds, first, sigma), right, left)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_a_profile_and_its_slopes(seed):
+def test_a_profile_at_any_position(seed):
+    """By tables of exponentials, and by the sum over plane waves."""
     rng = np.random.default_rng(seed)
-    modal, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
-    k = modal.contour.k[:, None]
-    wanted = [
-        np.stack(
-            [
-                reference.field(np.ones((1, k.shape[-1])), modal.right[f], modal.left[f], k[f, 0], x[f], order)[0]
-                for f in range(3)
-            ]
-        )
-        for order in range(3)
-    ]
-    for order in range(3):
-        found = modal.at(x, modal.slopes(order))
-        assert len(found) == order + 1
-        for one_found, want in zip(found, wanted, strict=False):
-            close(one_found, want)
-    close(modal.value(x), wanted[0])
+    plane_waves, x = random_modes(rng), rng.uniform(-1, 1, (3, 4))
+    k = plane_waves.contour.k[:, None]
+    right = plane_waves.right[:, None] * np.exp(1j * k * x[..., None])
+    left = plane_waves.left[:, None] * np.exp(-1j * k * x[..., None])
+    close(plane_waves.evaluator()(x), (right + left).sum(-1))
 
 
 # --- many angles ------------------------------------------------------------------------------------------

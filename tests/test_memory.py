@@ -204,11 +204,11 @@ def test_rows_in_parts_are_the_same(monkeypatch, even):
 
 def test_widths_in_parts_are_the_same(monkeypatch):
     """Frequencies that take many plane waves are worked on in halves."""
-    from beamprop.profiles import sections
+    from beamprop.profiles import many_frequencies
 
     f = np.linspace(2000, 3000, 11)
     whole = bp.beam_width(SLAB, BEAM, f)
-    monkeypatch.setattr(sections, "MOST_TOGETHER", 200)
+    monkeypatch.setattr(many_frequencies, "MOST_TOGETHER", 200)
     parts = bp.beam_width(SLAB, BEAM, f)
     for name in whole.data_vars:
         np.testing.assert_allclose(parts[name], whole[name], rtol=1e-7, atol=1e-12)

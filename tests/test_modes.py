@@ -369,16 +369,16 @@ def test_a_plain_beam_says_nothing():
 
 def test_crossings_alone_and_together():
     """Sampled on one window at once, and in a window that grows: the same number."""
-    from beamprop.profiles import sections
+    from beamprop.profiles import one_frequency, routes, sections
     from beamprop.response import transfer_function
     from beamprop.response.sampled_slab import sample_all
 
     slab, beam = bp.Slab.uniform(bp.Fluid.from_speed(1.3, 343.0), 0.01), two_humps()
     s = sample_all(slab, np.array([2000.0, 8000.0, 12_000.0]))
     face = np.full(3, slab.thickness)
-    route = sections.Route(
+    route = routes.Route(
         s,
-        lambda some, _: sections.far_face(some, 0.0),
+        lambda slab, _: routes.far_face(slab, 0.0),
         lambda one: transfer_function.through(one, 0.0),
         face,
         face,
@@ -387,7 +387,7 @@ def test_crossings_alone_and_together():
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
         one = s.take(i)
-        alone = sections._measured_alone(
+        alone = one_frequency.measured_alone(
             one, beam, transfer_function.through(one, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
         )
         assert alone[3] == together.crossings[i] == 4

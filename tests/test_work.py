@@ -12,7 +12,7 @@ from beamprop.contour import search, stretches
 from beamprop.fields import evaluate
 from beamprop.modes import misplaced
 from beamprop.modes.guided import dispersion_of
-from beamprop.profiles import fwhm, sections
+from beamprop.profiles import fwhm, one_frequency
 from beamprop.response.sampled_slab import FluidSlab, sample
 from beamprop.response.transfer_function import through
 
@@ -189,14 +189,14 @@ def test_a_guided_wave_that_runs_on_widens_no_window(chosen):
 
 def test_windows_of_a_beam_that_falls_are_widened():
     """|p| of a beam in open space falls by more than a guided wave's, and a peak that changes is another."""
-    rim = sections._Rim
-    assert not sections._runs_on([rim(1.0, 0.8, True)], True)
-    assert not sections._runs_on([rim(1.0, 0.8, True), rim(1.0, 0.56, True)], True)
-    assert not sections._runs_on([rim(1.0, 0.8, True), rim(1.2, 0.8, True)], True)
-    assert not sections._runs_on([rim(1.0, 0.8, False), rim(1.0, 0.8, True)], True)
-    assert sections._runs_on([rim(1.0, 0.8, True), rim(1.0, 0.8, True)], False)
-    assert sections._runs_on(4 * [rim(1.0, 0.8, False)], True)
-    assert not sections._runs_on(4 * [rim(1.0, 0.8, False)], False)
+    rim = one_frequency._Rim
+    assert not one_frequency._runs_on([rim(1.0, 0.8, True)], True)
+    assert not one_frequency._runs_on([rim(1.0, 0.8, True), rim(1.0, 0.56, True)], True)
+    assert not one_frequency._runs_on([rim(1.0, 0.8, True), rim(1.2, 0.8, True)], True)
+    assert not one_frequency._runs_on([rim(1.0, 0.8, False), rim(1.0, 0.8, True)], True)
+    assert one_frequency._runs_on([rim(1.0, 0.8, True), rim(1.0, 0.8, True)], False)
+    assert one_frequency._runs_on(4 * [rim(1.0, 0.8, False)], True)
+    assert not one_frequency._runs_on(4 * [rim(1.0, 0.8, False)], False)
 
 
 # --- backward waves ---------------------------------------------------------------------------------------

@@ -47,19 +47,16 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
     if not np.all(np.isfinite(ordered)):
         raise ValueError("profile: expected finite values, got NaN or infinity")
 
-    level, crossings = profile_width.HALF_LEVEL[width_of], [0]
-
-    def one(p: np.ndarray) -> float:
-        found = profile_width.full_width(x, p, level)
-        crossings.append(int(np.count_nonzero(np.diff(np.abs(p) > level * found.peak))))
-        return found.width
-
-    out = xr.apply_ufunc(one, ordered, input_core_dims=[[dim]], vectorize=True, output_dtypes=[float])
+    rows = ordered.transpose(..., dim)
+    measured = profile_width.of_samples(x, rows.values.reshape(-1, x.size), profile_width.HALF_LEVEL[width_of])
+    one_sample = rows.drop_vars([name for name, c in rows.coords.items() if dim in c.dims]).isel({dim: 0})
+    out = one_sample.copy(data=measured.width.reshape(rows.shape[:-1]))
+    crossings = int(measured.crossings.max(initial=0))
     if np.any(np.isnan(out)):
         warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)
-    if max(crossings) > 2:
+    if crossings > 2:
         warnings.warn(
-            f"fwhm: the half level is met up to {max(crossings)} times; the width is between the two places nearest to "
+            f"fwhm: the half level is met up to {crossings} times; the width is between the two places nearest to "
             "the peak",
             RuntimeWarning,
             stacklevel=2,

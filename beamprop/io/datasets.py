@@ -17,13 +17,13 @@ import xarray as xr
 
 from .. import validate
 from .._version import __version__
-from ..conventions import LABELS, label
 from ..media import effective as _homogenize
 from ..media.fluids import Fluid
 from ..media.structures import Cell, Layer, Membrane, Slab
 from ..sources.gaussian import GaussianBeam
 from ..sources.profile import Profile
 from ..sources.slits import Slits
+from .labels import label
 
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
 _RECORDS: dict[str, type] = {
@@ -100,7 +100,7 @@ def make(
     frequency: np.ndarray,
     **settings: Any,
 ) -> xr.Dataset:
-    """A dataset whose names all stand in `conventions.LABELS`, with its provenance.
+    """A dataset whose names all stand in `labels.LABELS`, with its provenance.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def make(
         Structure, beam and arguments to record.
     """
     record = {"beamprop": __version__, "question": question, **{k: describe(v, frequency) for k, v in settings.items()}}
-    labelled = {n: (d, v, label(n) if n in LABELS else {}) for n, (d, v) in variables.items()}
+    labelled = {n: (d, v, label(n)) for n, (d, v) in variables.items()}
     axes = {n: (d, v, label(n)) for n, (d, v) in coords.items()}
     attrs = {"provenance": json.dumps(record), "convention": "exp(-i w t), SI units, z = 0 at the near face"}
     return xr.Dataset(labelled, axes, attrs)

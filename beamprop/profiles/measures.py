@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -11,14 +11,14 @@ from scipy.integrate import simpson
 
 from ..contour import choose
 from ..contour.error import SHIFT
-from ..fields import evaluate
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
-from ..sources.angles import single
 from ..sources.base import Beam
-from . import fwhm, power, sections
+from . import power
+from .fwhm import full_width
 from .power import NOTHING, Radiated
+from .windows import Windows, ends_over_peak, widened
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
 TAIL = 0.01
@@ -53,74 +53,61 @@ def reflected_and_transmitted(
     choose.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
-    launched = _power(s, beam, _unchanged, False, rtol)
-    out = []
-    for transfer, place, behind in (
-        (transfer_function.reflected(s, beam.z0), ray, False),
-        (transfer_function.transmitted(s, beam.z0), ray + s.thickness * slope, True),
-    ):
-        out.append(_measure(s, beam, transfer, place, behind, launched, rtol, window))
-    return out
+    launched = _power(s, beam, TransferFunction(s, _unchanged), False, rtol)
+    sides = (
+        Side(transfer_function.reflected(s, beam.z0), ray, False),
+        Side(transfer_function.through(s, beam.z0), ray + s.thickness * slope, True),
+    )
+    return [_measure(s, beam, side, launched, rtol, window) for side in sides]
 
 
-#: kx (n,), shift -> H at a face (n,), at kx (1 + shift) and w (1 - shift): see `TransferFunction`.
-Face = Callable[..., np.ndarray]
+class Side(NamedTuple):
+    """The beam that leaves a face of the slab."""
+
+    transfer: TransferFunction  #: whose value on the far face's z is the beam at its own face
+    ray: float  #: where the geometric ray meets that face [m]
+    behind: bool
 
 
-def _unchanged(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
-    return np.ones(kx.shape)
-
-
-def _at_face(transfer: TransferFunction) -> Face:
-    """A transfer function that is the same at all depths, as a function of kx alone."""
-    return lambda kx, shift=0.0: transfer(kx, np.zeros(1), shift)[0]
+def _unchanged(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+    return np.ones((z.size, kx.size))
 
 
 def _measure(
-    s: SampledSlab,
-    beam: Beam,
-    transfer: TransferFunction,
-    ray: float,
-    behind: bool,
-    launched: Radiated,
-    rtol: float,
-    window: float | None,
+    s: SampledSlab, beam: Beam, side: Side, launched: Radiated, rtol: float, window: float | None
 ) -> tuple[Beamlet, float, float]:
-    face = _at_face(transfer)
-    if not _any_beam(s, beam, face):
+    if not _any_beam(s, beam, side.transfer):
         return NO_BEAM, 0.0, 0.0
-    plane = np.array([s.thickness])
-    for x in _windows(s, beam, ray, window):
-        quadrature = choose.choose_contour(s, single(beam), transfer, x, plane, rtol)
-        h = face(quadrature.contour.k)[None]
-        if window is None and not quadrature.fft:
-            x = sections.needed(s, beam, quadrature, h, x)
-        p = evaluate.beam_sum(s, beam, quadrature, h, x)[0]
-        size = np.abs(p)
-        if max(size[0], size[-1]) < TAIL * size.max() or size.max() == 0:
-            break
-    between = evaluate.evaluator(s, beam, quadrature, h)
-    full = fwhm.full_width(x, p, 0.5, between)
-    e2 = fwhm.full_width(x, p, math.exp(-1), between)
-    centroid, spread, part = _moments(x, size, window is not None)
-    radiated = _power(s, beam, face, behind, rtol)
-    crossings = int(np.count_nonzero(np.diff(size > full.peak / 2)))
-    beamlet = Beamlet(
-        full.width,
-        e2.width,
-        4 * spread,
-        centroid,
-        centroid - ray,
-        full.peak,
-        radiated.total / launched.total if launched.total > 0 else math.nan,
-        2 * radiated.deviation,
-        radiated.mean,
-        crossings,
-        float(x[part][0]),
-        float(x[part][-1]),
-        float(max(size[part][0], size[part][-1]) / full.peak) if full.peak > 0 else 0.0,
+    whole = window is not None
+    profile = widened(
+        s,
+        beam,
+        side.transfer,
+        s.thickness,
+        Windows(_windows(s, beam, side.ray, window), lambda p: not ends_over_peak(p) >= TAIL, thin=not whole),
+        rtol,
     )
-    return beamlet, float(quadrature.error[0]), radiated.error + launched.error
+    x, p, exact = profile.x, profile.p, profile.evaluator(s, beam)
+    half = full_width(x, p, 0.5, exact)
+    size, peak = np.abs(p), float(half.peak)
+    centroid, spread, part = _moments(x, size, whole)
+    radiated = _power(s, beam, side.transfer, side.behind, rtol)
+    beamlet = Beamlet(
+        fwhm=float(half.width),
+        width_1e2=float(full_width(x, p, math.exp(-1), exact).width),
+        width_second_moment=4 * spread,
+        centroid=centroid,
+        lateral_shift=centroid - side.ray,
+        peak=peak,
+        power=radiated.total / launched.total if launched.total > 0 else math.nan,
+        divergence=2 * radiated.deviation,
+        far_angle=radiated.mean,
+        crossings=int(half.crossings),
+        moments_from=float(x[part][0]),
+        moments_to=float(x[part][-1]),
+        rim=float(max(size[part][0], size[part][-1])) / peak if peak > 0 else 0.0,
+    )
+    return beamlet, float(profile.quadrature.error[0]), radiated.error + launched.error
 
 
 #: What is said of a side without a beam.
@@ -128,18 +115,16 @@ _NAN = math.nan
 NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
 
 
-def _any_beam(s: SampledSlab, beam: Beam, face: Face) -> bool:
+def _any_beam(s: SampledSlab, beam: Beam, transfer: TransferFunction) -> bool:
     """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
-    return bool(
-        np.max(strength * np.abs(face(k)))
-        > 1e-12 * np.max(strength * np.abs(transfer_function.launched(s, k, beam.z0)))
-    )
+    arriving = strength * np.abs(transfer(k, np.array([s.thickness]))[0])
+    return bool(np.max(arriving) > 1e-12 * np.max(strength * np.abs(transfer_function.launched(s, k, beam.z0)[0])))
 
 
 def _windows(s: SampledSlab, beam: Beam, ray: float, window: float | None) -> Iterator[np.ndarray]:
-    """Positions of the window that is asked for, or of wider and wider ones."""
+    """Positions of the requested window, or of windows each twice as wide as the one before."""
     if window is not None:
         yield ray + window * np.linspace(-1, 1, FINER * (_samples(s, beam, window) - 1) + 1)
         return
@@ -172,8 +157,9 @@ def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float
     return float(centre), float(np.sqrt(integral(weight * (x - centre) ** 2, x=x) / total)), part
 
 
-def _power(s: SampledSlab, beam: Beam, face: Face, behind: bool, rtol: float) -> Radiated:
+def _power(s: SampledSlab, beam: Beam, transfer: TransferFunction, behind: bool, rtol: float) -> Radiated:
     """What S h radiates into a half-space, but for a constant."""
+    face = np.array([s.thickness])
     k = s.largest_kx(behind)
     if k == 0:
         return NOTHING
@@ -181,7 +167,7 @@ def _power(s: SampledSlab, beam: Beam, face: Face, behind: bool, rtol: float) ->
     def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
         kx = kx.astype(complex)
         admittance = (s.admittance_after(kx) if behind else s.admittance_before(kx))[0].real
-        h = face(kx, shift)
+        h = transfer(kx, face, shift)[0]
         right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 * admittance for sign in (1, -1))
         return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
 

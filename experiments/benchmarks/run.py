@@ -19,7 +19,7 @@ from tqdm import tqdm
 import beamprop as bp
 from beamprop import response
 from beamprop.contour import paths
-from beamprop.profiles import sections
+from beamprop.profiles import landing, many_frequencies, routes
 from beamprop.response import sampled_slab
 
 FREQUENCY = 2500.0
@@ -92,8 +92,9 @@ def widths(options: argparse.Namespace) -> list[Row]:
 def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
     """A frequency's scene, and the line that `beam_width` takes for it."""
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
-    middle, half = sections.landing(batch, BEAM, sections.far_face(batch, BEAM.z0))
-    plan = sections._plan(batch, BEAM, np.array([SLAB.thickness]), middle, half, 1e-8)
+    path = np.array([SLAB.thickness])
+    middle, half = landing.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)
+    plan = many_frequencies._plan(batch, BEAM, path, middle, half, 1e-8)
     return sampled_slab.sample(SLAB, frequency), paths.straight_contour(plan).k[0]
 
 

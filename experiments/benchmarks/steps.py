@@ -89,9 +89,9 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         widths,
         {
             "windows, by stationary phase": ("contour/stationary_phase.py", "landing"),
-            "poles on the wrong side": ("profiles/sections.py", "_backward"),
-            "contours and their response": ("profiles/sections.py", "_both_modes"),
-            "samples, peak, edges": ("profiles/sections.py", "_measured"),
+            "poles on the wrong side": ("profiles/many_frequencies.py", "_backward"),
+            "contours and their response": ("profiles/many_frequencies.py", "_both_contours"),
+            "samples, peak, edges": ("profiles/many_frequencies.py", "_measured"),
         },
     ),
 }
@@ -145,7 +145,9 @@ STEPS = [
     Step("low rank of the planes: 450 periods", field_map, evaluate, "MANY_PLANES", NEVER_SO_MANY),
     Step("low rank of the planes: air", air, evaluate, "MANY_PLANES", NEVER_SO_MANY),
     Step("angle interpolation", hundred_angles, question, "interpolate_angles", every_angle),
-    Step("straight contours and FFTs where they are cheaper", coarse_in_z, straight, "fft_is_cheaper", lambda *_: False),
+    Step(
+        "straight contours and FFTs where they are cheaper", coarse_in_z, straight, "fft_is_cheaper", lambda *_: False
+    ),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", never),
     Step("powers of periods by two tables", coarse_map, interior, "TABLE", NEVER_SO_MANY),
     Step("two waves in a thick layer", air, interior, "_steady", never),

@@ -10,7 +10,7 @@ too. The grid form has the sections ``% Grid`` (one row for each axis) and ``% D
 sectionwise form ``% Coordinates``, ``% Elements`` and ``% Data``. COMSOL is exp(+i w t), so complex fields are
 conjugated here.
 
-Data flows text -> names -> forms (a table of points and columns, lengths in m) -> assemble (the dataset). Every refusal
+Data flows text -> names -> forms (a table of points and columns, lengths in m) -> points, parameters -> assemble (the dataset). Every refusal
 names the file, the line, what was expected and what came.
 """
 

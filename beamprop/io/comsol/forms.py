@@ -71,8 +71,8 @@ def _header_names(source: Source, delimiter: str, width: int) -> tuple[int, list
         names = column_names(text, trial)
         if len(names) == width:
             return line, names
-    found = len(column_names(text, delimiter))
-    source.refuse(line, f"{width} names, for the {width} columns below", f"{found} in {short(text)}")
+    count = len(column_names(text, delimiter))
+    source.refuse(line, f"{width} names, for the {width} columns below", f"{count} in {short(text)}")
 
 
 def _count_coordinates(source: Source, line: int, columns: list[Column]) -> int:
@@ -215,22 +215,22 @@ def read_sections(source: Source, factor: float) -> Table:
     return Table(source, coordinates, columns, values, elements)
 
 
-def _check_dimension(source: Source, section: _Section, found: int) -> None:
+def _check_dimension(source: Source, section: _Section, count: int) -> None:
     stated = source.count("dimension")
-    if found > 3 or (stated is not None and found != stated):
-        source.refuse(section.line, f"{stated or 'one to three'} coordinates", f"{found}")
+    if count > 3 or (stated is not None and count != stated):
+        source.refuse(section.line, f"{stated or 'one to three'} coordinates", f"{count}")
 
 
 def _read_elements(source: Source, sections: list[_Section], nodes: int) -> np.ndarray | None:
     """Corners of the elements, counted from 0; None without elements, or with elements of several shapes."""
-    found = []
+    blocks = []
     for section in sections:
         corners = _matrix(source, section, None)
         whole = not np.iscomplexobj(corners) and np.all(corners == np.floor(corners))
         if not whole or corners.min() < 1 or corners.max() > nodes:
             source.refuse(section.line, f"numbers of nodes from 1 to {nodes} in the elements", "others")
-        found.append(corners.astype(int) - 1)
-    return np.concatenate(found) if len({f.shape[1] for f in found}) == 1 else None
+        blocks.append(corners.astype(int) - 1)
+    return np.concatenate(blocks) if len({f.shape[1] for f in blocks}) == 1 else None
 
 
 #: First section of the header -> reader.

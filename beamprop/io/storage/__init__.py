@@ -5,7 +5,7 @@ as complex numbers too. `save` with ``split_complex=True`` writes a pair of real
 that do not know compound types; `load` joins them again. A file appears under its name only when it is complete, is on the disk by then,
 and carries checksums that `load` verifies.
 
-Order of the files here: `whole` and `reading` know paths alone, `guarded` and `seal` bytes, `netcdf` and `zarr_store` a format each.
+Order of the files here: `whole` and `settled` know paths alone, `guarded` and `seal` bytes, `netcdf` and `zarr_store` a format each.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 import xarray as xr
 
 from ... import validate
-from ...conventions import label
+from ..labels import label
 from .blocked import BlockedVariable, Blocks
 from .parts import joined, split
 from .settled import read_settled

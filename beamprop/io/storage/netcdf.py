@@ -18,7 +18,7 @@ import xarray as xr
 from .blocked import BlockedVariable
 from .guarded import GuardedFile, uninterrupted
 from .seal import Stretch, check_seal, seal
-from .settled import EXPANSION, HARMLESS, load_variable
+from .settled import Refusal, read_values, refuse_expansion
 
 #: Attribute with the variables that were written: their sizes and types, and the file's token.
 RECORD = "beamprop_variables"
@@ -139,9 +139,9 @@ def _stretches(name: str, item: Any) -> list[Stretch]:
     if item.chunks is None:
         start = item.id.get_offset()
         return [] if start is None else [(start, start + item.id.get_storage_size(), name)]
-    found: list[Stretch] = []
-    item.id.chunk_iter(lambda chunk: found.append((chunk.byte_offset, chunk.byte_offset + chunk.size, name)))
-    return found
+    stretches: list[Stretch] = []
+    item.id.chunk_iter(lambda chunk: stretches.append((chunk.byte_offset, chunk.byte_offset + chunk.size, name)))
+    return stretches
 
 
 # --- reading --------------------------------------------------------------------------------------------------
@@ -156,29 +156,17 @@ def read(path: Path) -> xr.Dataset:
         Names the file, and the variable, that is damaged or asks for what `save` does not write.
     """
     check_seal(path)
-    try:
-        with h5py.File(path, "r") as h5:
-            _refuse_foreign(path, h5, h5, set())
-            _check_record(path, h5)
-        opened = xr.open_dataset(path, engine="h5netcdf")
-    except Refusal as error:
-        raise ValueError(str(error)) from None
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise ValueError(
-            f"{path}: expected a netCDF file, got one that cannot be read, damaged or cut off ({error})"
-        ) from None
-    with opened:
-        for name, v in opened.variables.items():
-            load_variable(path, name, v)
-        ds = opened.load()
+    unreadable = "expected a netCDF file, got one that cannot be read, damaged or cut off"
+    ds = read_values(path, lambda: _open(path), unreadable)
     ds.attrs.pop(RECORD, None)
     return ds
 
 
-class Refusal(ValueError):
-    """A file is readable, but not to be read."""
+def _open(path: Path) -> xr.Dataset:
+    with h5py.File(path, "r") as h5:
+        _refuse_foreign(path, h5, h5, set())
+        _check_record(path, h5)
+    return xr.open_dataset(path, engine="h5netcdf")
 
 
 def _refuse_foreign(path: Path, h5: h5py.File, group: h5py.Group, seen: set[Any]) -> None:
@@ -219,11 +207,8 @@ def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
             )
     if bytes(item.attrs.get("NAME", b"")).startswith(LENGTH_ALONE):
         return
-    asked = item.dtype.itemsize * math.prod(item.shape or ())
-    if asked > HARMLESS and asked > EXPANSION * item.id.get_storage_size():
-        raise Refusal(
-            f"{path}: expected values, got {where!r} of {asked:.3g} bytes, of which {item.id.get_storage_size()} are stored"
-        )
+    size = item.dtype.itemsize * math.prod(item.shape or ())
+    refuse_expansion(str(path), repr(where), size, item.id.get_storage_size())
 
 
 def _check_record(path: Path, h5: h5py.File) -> None:
@@ -238,13 +223,13 @@ def _check_record(path: Path, h5: h5py.File) -> None:
         raise Refusal(f"{path}: expected the list of its variables in {RECORD!r}, got {text[:60]!r}") from None
     if f"beamprop={token}".encode() not in bytes(properties):
         return
-    found = _layout(h5)
+    present = _layout(h5)
     for name, layout in written.items():
-        if name not in found:
+        if name not in present:
             raise Refusal(
-                f"{path}: expected the variable {name!r}, which was written, got {', '.join(found) or 'none'}"
+                f"{path}: expected the variable {name!r}, which was written, got {', '.join(present) or 'none'}"
             )
-        if found[name] != layout:
+        if present[name] != layout:
             raise Refusal(
-                f"{path}: expected variable {name!r} of shape and type {layout}, as written, got {found[name]}"
+                f"{path}: expected variable {name!r} of shape and type {layout}, as written, got {present[name]}"
             )

@@ -75,7 +75,32 @@ def _identity(path: Path | int) -> tuple[int, int] | None:
     return status.st_dev, status.st_ino
 
 
-def load_variable(path: Path, name: Any, v: xr.Variable) -> None:
+class Refusal(ValueError):
+    """A file is readable, but not to be read."""
+
+
+def read_values(path: Path, open_dataset: Callable[[], xr.Dataset], unreadable: str) -> xr.Dataset:
+    """Open a dataset and read all of its values into memory.
+
+    Raises
+    ------
+    ValueError
+        `unreadable`, which says what was expected and what came, where it cannot be opened; the name of the variable whose values
+        are damaged.
+    """
+    try:
+        opened = open_dataset()
+    except (Refusal, MemoryError):
+        raise
+    except Exception as error:
+        raise ValueError(f"{path}: {unreadable} ({error})") from None
+    with opened:
+        for name, v in opened.variables.items():
+            _load(path, name, v)
+        return opened.load()
+
+
+def _load(path: Path, name: Any, v: xr.Variable) -> None:
     """Read the values of a variable; what goes wrong names it."""
     try:
         v.load()
@@ -83,3 +108,9 @@ def load_variable(path: Path, name: Any, v: xr.Variable) -> None:
         raise
     except Exception as error:
         raise ValueError(f"{path}: expected the values of variable {name!r}, got damaged ones ({error})") from None
+
+
+def refuse_expansion(where: str, array: str, size: float, stored: int) -> None:
+    """Few stored bytes must not ask for much memory."""
+    if size > HARMLESS and size > EXPANSION * stored:
+        raise Refusal(f"{where}: expected values, got {array} of {size:.3g} bytes, of which {stored} are stored")

@@ -21,7 +21,7 @@ import numpy as np
 import xarray as xr
 
 from .blocked import BlockedVariable
-from .settled import EXPANSION, HARMLESS, load_variable
+from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
 #: In place of a CRC-32: the chunk is one of fill values, which Zarr does not write.
@@ -147,16 +147,8 @@ def read(path: Path) -> xr.Dataset:
         raise ValueError(
             f"{path}: expected a store as it was written, got one whose list of checksums is none"
         ) from None
-    try:
-        opened = xr.open_zarr(path, consolidated=False)
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise ValueError(f"{path}: expected a Zarr store, got one that cannot be read ({error})") from None
-    with opened:
-        for name, v in opened.variables.items():
-            load_variable(path, name, v)
-        return opened.load()
+    unreadable = "expected a Zarr store, got one that cannot be read"
+    return read_values(path, lambda: xr.open_zarr(path, consolidated=False), unreadable)
 
 
 def _refuse_strange_files(path: Path) -> None:
@@ -258,13 +250,10 @@ def _refuse_huge(where: str, folder: Path, about: dict[str, Any]) -> None:
     bits = re.search(r"\d+$", about["data_type"]) if isinstance(about["data_type"], str) else None
     size = int(bits.group()) // 8 if bits else 8
     chunk = size * math.prod(about["chunk_grid"]["configuration"]["chunk_shape"])
-    asked = max(size * math.prod(about["shape"]), chunk)
-    if asked > HARMLESS:
+    size = max(size * math.prod(about["shape"]), chunk)
+    if size > HARMLESS:  # only then are the files looked at
         stored = sum(Path(f, n).stat().st_size for f, _, names in os.walk(folder) for n in names)
-        if asked > EXPANSION * stored:
-            raise ValueError(
-                f"{where}: expected values, got an array of {asked:.3g} bytes, of which {stored} are stored"
-            )
+        refuse_expansion(where, "an array", size, stored)
 
 
 def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
@@ -280,11 +269,11 @@ def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
         raise ValueError(f"{wrong} the list of its checksums (in zarr.json)")
     if _digest(root | {"attributes": attributes}) != whole["root"]:
         raise ValueError(f"{wrong} the names or attributes of the whole (in zarr.json)")
-    found = {f.relative_to(path).as_posix(): (f, about) for f, about in nodes.items() if about["node_type"] == "array"}
+    arrays = {f.relative_to(path).as_posix(): (f, about) for f, about in nodes.items() if about["node_type"] == "array"}
     for name, (metadata, crcs) in whole["arrays"].items():
-        if name not in found:
+        if name not in arrays:
             raise ValueError(f"{wrong} variable {name!r}: it is missing")
-        folder, about = found[name]
+        folder, about = arrays[name]
         if _digest(about) != metadata:
             raise ValueError(f"{wrong} variable {name!r}: its dimensions, type or attributes (in {name}/zarr.json)")
         wanted = [crcs[k : k + 8] for k in range(0, len(crcs), 8)]
@@ -292,5 +281,5 @@ def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
             if is_now != crc:
                 what = "is missing" if is_now == ABSENT else "is not as it was written (wrong checksum)"
                 raise ValueError(f"{wrong} variable {name!r}: its chunk {key!r} {what}")
-    if added := set(found) - set(whole["arrays"]):
+    if added := set(arrays) - set(whole["arrays"]):
         raise ValueError(f"{wrong} what it holds: {', '.join(map(repr, sorted(added)))} came later")

@@ -1,0 +1,84 @@
+"""The one schema of names: units and long name of every variable and coordinate of every dataset."""
+
+from __future__ import annotations
+
+#: Coordinates: (units, long name).
+COORDINATES: dict[str, tuple[str, str]] = {
+    "frequency": ("Hz", "frequency"),
+    "angle": ("degree", "angle of incidence from the normal"),
+    "x": ("m", "lateral position"),
+    "z": ("m", "depth from the near face"),
+    "kx": ("rad/m", "lateral wavenumber"),
+    "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),
+    "mode": ("1", "number of the guided mode"),
+    "side": ("1", "reflected beam at the near face, or transmitted beam at the far face"),
+}
+
+#: Variables of the questions about one slab and one beam.
+ANSWERS: dict[str, tuple[str, str]] = {
+    "kz": ("rad/m", "Bloch wavenumber"),
+    "kz_over_k0": ("1", "Bloch wavenumber over that of the medium in front"),
+    "direction": ("1", "energy along (+1) or against (-1) the phase, laterally; 0 where there is no mode"),
+    "residual": ("1", "last step of the refinement over kx"),
+    "count": ("1", "number of modes by the argument principle"),
+    "fwhm": ("m", "full width at half maximum of |p|"),
+    "width_1e2": ("m", "full width at 1/e^2 of the largest |p|^2"),
+    "width_second_moment": ("m", "four standard deviations of |p|^2"),
+    "centroid": ("m", "centroid of |p|^2"),
+    "lateral_shift": ("m", "centroid less the geometric ray"),
+    "peak": ("Pa", "largest |p|"),
+    "power": ("1", "share of the launched power that radiates"),
+    "divergence": ("degree", "far-field half-angle, two standard deviations of the power's direction"),
+    "far_angle": ("degree", "mean direction of the radiated power"),
+    "crossings": ("1", "how often |p| crosses the half level inside the window"),
+    "moments_from": ("m", "begin of the interval of centroid and second moment"),
+    "moments_to": ("m", "end of the interval of centroid and second moment"),
+    "rim": ("1", "larger |p| at the ends of that interval over the peak"),
+    "r": ("1", "complex pressure reflection coefficient"),
+    "t": ("1", "complex pressure transmission coefficient"),
+    "reflectivity": ("1", "reflectivity |r|^2"),
+    "transmissivity": ("1", "transmissivity |t|^2"),
+    "energy_transmission": ("1", "transmitted share of the incident power"),
+    "absorption": ("1", "absorbed share of the incident power"),
+    "p": ("Pa", "complex sound pressure, exp(-i w t)"),
+    "error_estimate": ("1", "estimated relative error: of a field, over the largest |p| of the plane"),
+    "r_error_estimate": ("1", "estimated error of r over the larger of |r| and 1"),
+    "t_error_estimate": ("1", "estimated error of t over |t|"),
+    "fwhm_launch": ("m", "full width at half maximum at the launch plane"),
+    "fwhm_in": ("m", "full width at half maximum of the incident beam at the near face"),
+    "fwhm_out": ("m", "full width at half maximum at the far face"),
+    "fwhm_air": ("m", "full width at half maximum after the comparison distance without a slab"),
+    "peak_out": ("Pa", "largest |p| at the far face"),
+    "centroid_out": ("m", "centroid of |p|^2 at the far face"),
+}
+
+#: Variables of the comparison of two fields a and b.
+COMPARISON: dict[str, tuple[str, str]] = {
+    "relative_l2": ("1", "relative L2 error"),
+    "relative_l2_by_z": ("1", "relative L2 error at each depth"),
+    "relative_l2_scaled": ("1", "relative L2 error after the best complex scale factor"),
+    "scale": ("1", "complex factor that brings b nearest to a"),
+    "largest_error": ("1", "largest |a - b| over the largest |a|"),
+    "largest_error_x": ("m", "lateral position of the largest error"),
+    "largest_error_z": ("m", "depth of the largest error"),
+    "fwhm_a": ("m", "full width at half maximum of |a|"),
+    "fwhm_b": ("m", "full width at half maximum of |b|"),
+    "fwhm_difference": ("m", "full width of |b| less that of |a|"),
+    "peak_a": ("Pa", "largest |a| at each depth"),
+    "peak_b": ("Pa", "largest |b| at each depth"),
+    "peak_difference": ("Pa", "largest |b| less largest |a|"),
+    "p_a": ("Pa", "complex sound pressure of a"),
+    "p_b": ("Pa", "complex sound pressure of b on a's grid"),
+    "error": ("Pa", "|a - b|"),
+    "interpolation_error": ("1", "estimated share of the error that comes from interpolating b"),
+    "wraparound": ("1", "relative L2 difference that the period makes"),
+}
+
+#: All of them.
+LABELS: dict[str, tuple[str, str]] = COORDINATES | ANSWERS | COMPARISON
+
+
+def label(name: str) -> dict[str, str]:
+    """Attributes (units, long_name) of a variable or coordinate."""
+    units, long_name = LABELS[name]
+    return {"units": units, "long_name": long_name}

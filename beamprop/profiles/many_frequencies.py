@@ -1,0 +1,171 @@
+"""Profiles across one plane measured at all frequencies at once.
+
+p is sampled on the whole window of a straight contour by one small FFT a frequency; the width is found on that grid and on the
+exact sum over the plane waves. A second contour of other parameters gives the error.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..arrays import fft
+from ..contour import near_normal, paths, sums
+from ..contour.paths import Contour, Extent, StraightPlan
+from ..contour.stationary_phase import landing
+from ..modes import misplaced
+from ..response.sampled_slab import SampledSlab
+from ..sources.base import Beam
+from .fwhm import Evaluate, full_width
+from .routes import Measures, Plane, Route
+from .windows import EDGE
+
+#: Exponentials on an even contour are products of two small tables, this many steps apart.
+STEP = 12
+
+
+class PlaneWaves(NamedTuple):
+    """p(x) = sum right e^{ikx} + left e^{-ikx} over even straight contours, x from the beam's centre; arrays (F, n)."""
+
+    contour: Contour
+    right: np.ndarray
+    left: np.ndarray
+
+    def evaluator(self) -> Evaluate:
+        """A function of positions (F, m) -> p there, (F, m)."""
+        # plain: the sum over k of right e^{ikx} + left e^{-ikx}. With k = m ds - i sigma, e^{ikx} is a power of e^{i ds x} times
+        # e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
+        contour, n = self.contour, self.contour.k.shape[-1]
+        amplitudes = np.stack([self.right, np.conj(self.left)], axis=-1)
+        sigma = np.asarray(contour.sigma)[:, None]
+
+        def value(x: np.ndarray) -> np.ndarray:
+            angle = 1j * (np.asarray(contour.step)[:, None] * x)[..., None]
+            coarse = np.exp(angle * (contour.first + np.arange(0, n, STEP)))
+            powers = (coarse[..., None] * np.exp(angle * np.arange(STEP))[..., None, :]).reshape(*x.shape, -1)[..., :n]
+            right, left = np.moveaxis(powers @ amplitudes, -1, 0)
+            grow = np.exp(sigma * x)
+            return np.asarray(right * grow + np.conj(left) / grow)
+
+        return value
+
+
+def _both_contours(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves]:
+    """The plane waves at the plane, on a contour and on a second one for the error; one response for both."""
+    contours = paths.straight_contour(plan), paths.straight_contour(plan.other())
+    k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
+    h = plane(k)
+    right, left = sums.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    right, left, n = right * h, left * h, contours[0].k.shape[-1]
+    return PlaneWaves(contours[0], right[:, :n], left[:, :n]), PlaneWaves(contours[1], right[:, n:], left[:, n:])
+
+
+def _plan(s: SampledSlab, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
+    lo, hi = beam.band(s.k0, rtol * 1e-2)
+    source = beam.reach(rtol * 1e-2)
+    extent = np.abs(middle - beam.centre) + half
+    branch = s.nearest_branch
+    return paths.plan_straight(Extent(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
+
+
+#: The most plane waves of all frequencies that are worked on at a time, and of one of them.
+MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
+#: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
+ROUND = 0.25
+
+
+def measured_together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
+    """Measures at all frequencies, (F,) each, and which of them can be trusted, (F,).
+
+    None can of a beam whose spectrum is not entire, or where that many plane waves are needed that a bent contour is faster. The
+    frequencies are halved until their plane waves fit.
+    """
+    s, count = route.slab, np.size(route.slab.k0)
+    nothing = Measures(*(np.full(count, np.nan) for _ in Measures._fields)), np.zeros(count, bool)
+    if not beam.entire:
+        return nothing
+    plane = route.plane(s, route.path)
+    middle, half = landing(s, beam, plane, route.path)
+    plan = _plan(s, beam, route.path, middle, half, rtol)
+    size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
+    if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
+        halves = [
+            measured_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)
+        ]
+        (low, good_low), (high, good_high) = halves
+        return Measures(*map(np.concatenate, zip(low, high, strict=True))), np.concatenate([good_low, good_high])
+    if size >= MOST_OF_ONE:
+        return nothing
+    first, second = _both_contours(s, beam, plane, plan)
+    measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)
+    if route.guided:
+        good &= ~_backward(s, plan) & _calm_at_normal(plane, plan, rtol)
+    return measures._replace(centroid=measures.centroid + beam.centre), good
+
+
+def _calm_at_normal(plane: Plane, plan: StraightPlan, rtol: float) -> np.ndarray:
+    """Where no pole lies so near to kx = 0 that it counts half on either side, (F,)."""
+    near = plane(near_normal.around(np.asarray(plan.delta)[:, None] * ROUND))
+    return np.asarray(near_normal.is_calm(near, max(0.01 * rtol, 1e-12))[:, 0])
+
+
+def _taken(route: Route, rows: np.ndarray) -> Route:
+    """The route at the frequencies with those indices."""
+    return route._replace(slab=route.slab.take(rows), z=route.z[rows], path=route.path[rows])
+
+
+def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
+    """Where the contours leave a guided mode on their wrong side, (F,)."""
+    wrong = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
+    for i in np.flatnonzero(wrong) if s.lossless else []:  # what was counted may be forward
+        slab = s.take(int(i))
+        start = min(1e-3 * slab.k0, 0.1 * slab.nearest_branch)
+        poles = misplaced.misplaced(slab, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
+        wrong[i] = bool(poles.poles) or math.isfinite(poles.crossing)
+    return wrong
+
+
+def _sampled(plane_waves: PlaneWaves, plan: StraightPlan) -> tuple[np.ndarray, np.ndarray]:
+    """p on an even grid over each whole window: x and p, (F, n)."""
+    contour = plane_waves.contour
+    m = contour.first + np.arange(contour.k.shape[-1])
+    n = fft.fast_length(3 * int(np.max(np.abs(m))) + 1)
+    x = plan.window[:, None] * ((np.arange(n) - n // 2) / n)
+    bins = np.zeros((2, *contour.k.shape[:-1], n), complex)
+    turn = np.where(m % 2, -1.0, 1.0) if n % 2 == 0 else np.exp(-2j * np.pi * m * (n // 2) / n)
+    bins[0][:, m % n] = plane_waves.right * turn
+    bins[1][:, -m % n] = plane_waves.left * np.conj(turn)
+    right, left = fft.transform(bins)
+    grow = np.exp(contour.sigma[:, None] * x)
+    return x, right * grow + left / grow
+
+
+def _measured(
+    first: PlaneWaves,
+    second: PlaneWaves,
+    plan: StraightPlan,
+    window: tuple[np.ndarray, np.ndarray],
+    level: float,
+    rtol: float,
+) -> tuple[Measures, np.ndarray]:
+    """Measures from the samples in windows, given by middle and half-width, and where they can be trusted."""
+    x, p = _sampled(first, plan)
+    middle, half = (v[:, None] for v in window)
+    inside = np.abs(x - middle) <= half
+    exact = first.evaluator()
+    section = full_width(x, p, level, exact, inside, subsamples=0)
+    peak = section.peak
+    size = np.where(inside, np.abs(p), 0.0)
+    ends = np.argmax(inside, axis=-1), inside.shape[-1] - 1 - np.argmax(inside[:, ::-1], axis=-1)
+    largest_end = np.max([np.take_along_axis(size, end[:, None], -1)[:, 0] for end in ends], axis=0)
+    good = (largest_end < EDGE * level * peak) & (peak > 0) & np.isfinite(section.width)
+    check = np.stack([section.left, section.right, section.position], axis=-1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        error = 1.5 * np.max(np.abs(exact(check) - second.evaluator()(check)), axis=-1) / peak
+        power = size**2
+        centroid = (power * x).sum(-1) / power.sum(-1)
+    error = np.nan_to_num(error, nan=1.0)
+    good &= error <= rtol
+    return Measures(section.width, peak, centroid, section.crossings, error), good
