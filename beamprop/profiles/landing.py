@@ -10,7 +10,7 @@ from ..response.transfer_function import shifts
 from ..sources.beams import Beam
 from .routes import Plane
 
-#: From a way along z of so many 1/k0 on the window is found by `_far_landing`, and waves land at most so far to the side before.
+#: From a way along z of so many 1/k0 on the window is that of `_far_landing`; before, waves land at most so far to the side.
 FAR = 1e4
 
 
