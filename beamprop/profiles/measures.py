@@ -17,7 +17,7 @@ from ..sources.beams import Beam
 from . import power
 from .fwhm import full_width
 from .power import NOTHING, Radiated
-from .windows import ends_over_peak, widened
+from .windows import Arrival, ends_over_peak, widened
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
 TAIL = 0.01
@@ -95,8 +95,7 @@ def _measure(
     profile = widened(
         s,
         beam,
-        side.transfer,
-        s.thickness,
+        Arrival(side.transfer, s.thickness),
         _windows(s, beam, side.ray, window),
         rtol,
         lambda p: not ends_over_peak(p) >= TAIL,

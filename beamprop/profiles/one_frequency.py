@@ -15,7 +15,7 @@ from ..response.transfer_function import TransferFunction
 from ..sources.beams import Beam
 from .fwhm import centroid, full_width
 from .landing import landing
-from .windows import EDGE, ends_over_peak, widened
+from .windows import EDGE, Arrival, ends_over_peak, widened
 
 #: So many windows are tried, each twice as wide as the one before.
 WINDOWS = 9
@@ -43,7 +43,7 @@ def measured_alone(
         seen.append(_rim(np.abs(p), level))
         return guided and _runs_on(seen, s.lossless)
 
-    profile = widened(s, beam, transfer, z, _windows(s, beam, middle, half), rtol, holds, guided=guided)
+    profile = widened(s, beam, Arrival(transfer, z, guided), _windows(s, beam, middle, half), rtol, holds)
     section = full_width(profile.x, profile.p, level, profile.evaluator(s, beam))
     place, error = centroid(profile.x, profile.p), float(profile.quadrature.error[0])
     return float(section.width), float(section.peak), place, int(section.crossings), error

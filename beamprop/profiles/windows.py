@@ -21,6 +21,14 @@ from ..sources.beams import Beam
 EDGE = 0.8
 
 
+class Arrival(NamedTuple):
+    """How the beam gets to the plane that is measured, at one frequency."""
+
+    transfer: TransferFunction
+    z: float  #: of the plane [m]
+    guided: bool = True  #: whether there is a slab on the way, which may guide modes
+
+
 class Sampled(NamedTuple):
     """p across one plane, and the plane waves that it is the sum of."""
 
@@ -44,23 +52,20 @@ def ends_over_peak(p: np.ndarray) -> float:
 def widened(
     s: SampledSlab,
     beam: Beam,
-    transfer: TransferFunction,
-    z: float,
+    arrival: Arrival,
     windows: Iterable[np.ndarray],
     rtol: float,
     holds: Callable[[np.ndarray], bool],
-    *,
-    guided: bool = True,
     thin: bool = True,
 ) -> Sampled:
-    """p across the plane z in the first of the windows whose p `holds` all that is measured, or in the last.
+    """p across the plane in the first of the windows whose p `holds` all that is measured, or in the last.
 
     `windows` are even positions; `thin` takes fewer of them where the plane waves that arrive need no more.
     """
-    plane = np.array([z])
+    plane = np.array([arrival.z])
     for x in windows:
-        quadrature = choose.choose_contour(s, single(beam), transfer, x, plane, rtol, guided)
-        h = transfer(quadrature.contour.k, plane)
+        quadrature = choose.choose_contour(s, single(beam), arrival.transfer, x, plane, rtol, arrival.guided)
+        h = arrival.transfer(quadrature.contour.k, plane)
         if thin and not quadrature.fft:
             x = _needed(s, beam, quadrature, h, x)
         p = evaluate.beam_sum(s, beam, quadrature, h, x)[0]
