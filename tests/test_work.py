@@ -60,6 +60,51 @@ def test_the_edges_of_slits_are_found():
     assert fwhm.full_width(x, step(x), 0.5, step).width == pytest.approx(0.6, rel=1e-10)
 
 
+def test_many_widths_at_once_are_those_of_each():
+    """Of sums of Gaussian beams and tilted waves: by the function itself, by splines, in blocks, and where a part is masked."""
+    rng = np.random.default_rng(3)
+    x, waves = np.linspace(-4, 4, 81), rng.normal(size=(6, 40, 3, 2))
+    amplitude, k, at = waves[0, ..., 0] + 1j * waves[0, ..., 1], 3 * waves[1, ..., 0], waves[1, ..., 1] / 2
+
+    def profile(rows):
+        def p(x):
+            x = x[..., None]
+            a, kx, x0 = (v[rows] if isinstance(rows, int) else v[rows][:, None] for v in (amplitude, k, at))
+            return np.sum(a * np.exp(1j * kx * x - (x - x0) ** 2), axis=-1)
+
+        return p
+
+    together = profile(slice(None))(np.broadcast_to(x, (40, 81)))
+    inside = np.abs(x) < 1.5
+    for level in fwhm.HALF_LEVEL.values():
+        exact = fwhm.full_width(x, together, level, profile(slice(None)))
+        splines = fwhm.of_samples(x, together, level)
+        masked = fwhm.full_width(x, together, level, profile(slice(None)), np.broadcast_to(inside, together.shape))
+        for i in range(40):
+            alone = fwhm.full_width(x, together[i], level, profile(i))
+            np.testing.assert_allclose([v[i] for v in exact], alone, rtol=1e-11, atol=1e-11)
+            alone = fwhm.full_width(x, together[i], level)
+            np.testing.assert_allclose([v[i] for v in splines], alone, rtol=1e-11, atol=1e-11)
+            if np.argmax(np.abs(together[i, inside])) not in (0, np.count_nonzero(inside) - 1):
+                alone = fwhm.full_width(x[inside], together[i, inside], level, profile(i))
+                np.testing.assert_allclose([masked.left[i], masked.right[i]], alone[:2], rtol=1e-11, atol=1e-11)
+        ends = np.stack([exact.left, exact.right], axis=-1)
+        np.testing.assert_allclose(
+            np.abs(profile(slice(None))(ends)), level * exact.peak[:, None] + 0 * ends, rtol=1e-9
+        )
+        assert np.all(exact.peak >= np.abs(together).max(axis=-1))
+
+
+def test_widths_of_samples_are_measured_in_blocks(monkeypatch):
+    """The same numbers, whatever the block."""
+    x = np.linspace(-1, 1, 101)
+    p = np.exp(-((x / np.linspace(0.1, 0.4, 7)[:, None]) ** 2))
+    whole = fwhm.of_samples(x, p)
+    monkeypatch.setattr(fwhm, "MOST_SAMPLES", 250)
+    np.testing.assert_array_equal(fwhm.of_samples(x, p), whole)
+    np.testing.assert_allclose(whole.width, np.linspace(0.1, 0.4, 7) * 2 * np.sqrt(np.log(2)), rtol=1e-4)
+
+
 def test_spectra_are_formed_once_for_all_positions(monkeypatch):
     """A search for edges asks for p at many positions, one after the other."""
     beam = bp.Profile(np.linspace(-0.3, 0.3, 61), np.exp(-((np.linspace(-0.3, 0.3, 61) / 0.1) ** 2)))

@@ -224,7 +224,8 @@ def _zero(
             b, of_b = np.where(same, b, a), np.where(same, of_b, of_a)
             a, of_a = at, value
             wide = np.abs(b - a)
-            if np.all((wide <= 2 * tolerance) | (of_a == 0) | ~np.isfinite(of_a)):
+            done = (wide <= 2 * tolerance) | (of_a == 0) | ~np.isfinite(of_a)
+            if np.all(done):
                 break
             xi, phi = (a - b) / (c - b), (of_a - of_b) / (of_c - of_b)
             smooth = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)
@@ -232,6 +233,7 @@ def _zero(
             inverse = inverse + (c - a) / (b - a) * of_a / (of_c - of_a) * of_b / (of_c - of_b)
             least = np.minimum(np.nan_to_num(tolerance / wide, nan=0.5, posinf=0.5), 0.5)
             share = np.clip(np.where(smooth & np.isfinite(inverse), inverse, 0.5), least, 1 - least)
+            share = np.where(done, 0.0, share)  # stays, so that no profile's width depends on the others
     return np.where(np.abs(of_a) <= np.abs(of_b), a, b)
 
 

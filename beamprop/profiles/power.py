@@ -77,27 +77,27 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
         nodes = _nodes(k, edges, start, stop)
         return nodes, density(nodes.kx.ravel()), moved(nodes.kx.ravel()[nodes.fine]), stop - start
 
-    known = values(start, stop)
-    first_look = _summed(*known, 0.0).moments.sum(axis=1)
-    about = float(first_look[1] / first_look[0]) if first_look[0] > 0 else 0.0
-    found = _summed(*known, about)
+    panels = values(start, stop)
+    first_look = _summed(*panels, 0.0).moments.sum(axis=1)
+    reference = float(first_look[1] / first_look[0]) if first_look[0] > 0 else 0.0
+    sums = _summed(*panels, reference)
     while start.size < MOST_PANELS:
-        sizes = np.array([[found.moments[0].sum()], [np.abs(found.response).sum()]])
+        sizes = np.array([[sums.moments[0].sum()], [np.abs(sums.response).sum()]])
         allowed = max(SHARE * rtol, LEAST) * sizes / math.sqrt(start.size)
-        split = np.any(found.apart > np.maximum(allowed, np.abs(found.rounding)), axis=0)
+        split = np.any(sums.apart > np.maximum(allowed, np.abs(sums.rounding)), axis=0)
         if not np.any(split):
             break
         middle = (start + stop)[split] / 2
         halves = np.concatenate([start[split], middle]), np.concatenate([middle, stop[split]])
-        more = _summed(*values(*halves), about)
+        more = _summed(*values(*halves), reference)
         start, stop = (np.concatenate([old[~split], new]) for old, new in zip((start, stop), halves, strict=True))
-        found = _Sums(*(np.concatenate([old[..., ~split], new], -1) for old, new in zip(found, more, strict=True)))
-    total, first, second = found.moments.sum(axis=1)
+        sums = _Sums(*(np.concatenate([old[..., ~split], new], -1) for old, new in zip(sums, more, strict=True)))
+    total, first, second = sums.moments.sum(axis=1)
     if not total > 0:
         return NOTHING
     mean = first / total
-    error = (found.apart[0].sum() + abs(found.rounding[0].sum())) / total
-    return Radiated(float(total), float(about + mean), math.sqrt(max(second / total - mean**2, 0.0)), float(error))
+    error = (sums.apart[0].sum() + abs(sums.rounding[0].sum())) / total
+    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), float(error))
 
 
 def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
