@@ -249,7 +249,7 @@ def _taken(route: Route, rows: np.ndarray) -> Route:
 
 def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
     """Where the lines leave a mode on their wrong side, (F,)."""
-    bad = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
+    bad = misplaced.any_misplaced(s, 1.1 * plan.sigma, plan.band)
     for i in np.flatnonzero(bad) if s.lossless else []:  # what was counted may be forward
         one = s.take(int(i))
         start = min(1e-3 * one.k0, 0.1 * one.nearest_branch)
