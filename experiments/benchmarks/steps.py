@@ -121,7 +121,6 @@ STEPS = [
     Step("angle interpolation", lambda: bp.field(SLAB, BEAM, FREQUENCY, X, SLAB.thickness, angle=ANGLES[::10]), question, "fan", lambda beam, at, *_: source_angles.AngleInterpolation(beam, at)),
     Step("straight contours and FFTs where they are cheaper", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X, Z[::6]), choose, "fft_is_cheaper", lambda *_: False),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", lambda *_: None),
-    Step("powers of periods by two tables", lambda: bp.field(SLAB, BEAM.at_angle(45.0), FREQUENCY, X[::8], Z[::6]), interior, "TABLE", 10**9),
     Step("two waves in a thick layer", air, interior, "_steady", lambda u: None),
 ]  # fmt: skip
 
