@@ -256,7 +256,7 @@ def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
 
     f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
     depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
-    found = misplaced.some_misplaced(sample_all(slab, f), depth, band)
+    found = misplaced.any_misplaced(sample_all(slab, f), depth, band)
     each = [
         bool(misplaced.misplaced(sampled_slab.sample(slab, a), b, c, 1e-3 * K0).poles)
         for a, b, c in zip(f, depth, band, strict=True)

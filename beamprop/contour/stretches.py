@@ -118,7 +118,7 @@ def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[Misplac
         for left, right in itertools.pairwise(ends):
             if right - left > 3 * BESIDE * right:
                 side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
-                here = misplaced.few_modes(s, Box(left, right, -away, away), _without_growth)
+                here = misplaced.modes_in(s, Box(left, right, -away, away), _without_growth)
                 found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
     above, below = (misplaced.with_discs(s, found[side], of=_without_growth) for side in (1, -1))
     return [below, above._replace(crossing=0.0)]

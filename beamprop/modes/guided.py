@@ -1,8 +1,8 @@
-"""Guided modes of a slab: zeros of the dispersion function in the plane of complex kx, found by the argument principle.
+"""Guided modes of a slab: zeros of the dispersion function in the plane of complex kx, located by the argument principle.
 
 Loss moves a mode off the real axis: up if it carries energy along Re kx (forward), down if against it (backward, which
-negative densities allow). A mode of a lossless slab lies on the axis, and is told apart by the way it moves when a
-trace of loss is added.
+negative densities allow). A mode of a lossless slab lies on the axis; its direction follows from the way it moves when a
+small loss is added.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from .argument_principle import (
     zeros,
 )
 
-#: Relative loss by which modes are told apart: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, for a slab
-#: whose densities cancel feels it magnified.
+#: Relative loss that shows a mode's direction: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, because its effect is
+#: magnified in a slab whose densities cancel.
 LOSS = 1e-8
 #: A box of the search begins this far (relative) to the right of the last branch point.
 BESIDE = 1e-8
@@ -54,22 +54,22 @@ def dispersion_of(s: SampledSlab, loss: float = 0.0) -> Dispersion:
 
 
 def find_modes(s: SampledSlab, box: Box, most: float = math.inf) -> tuple[list[Mode], int]:
-    """All modes in a box, and how many the argument principle counts; `most`: see `zeros`.
+    """All modes in a box, and their number by the argument principle; `most`: see `zeros`.
 
-    UncertainCount where outlines of other nodes, or changes of sign of a lossless slab, say otherwise.
+    UncertainCount if outlines with different nodes, or the changes of sign of a lossless slab, contradict each other.
     """
     f = dispersion_of(s)
-    total, again = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
+    total, recount = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
     on_axis = real_zeros(f, box.left, box.right) if s.lossless and box.low < 0 < box.high else []
-    if total != again or len(on_axis) > total:
-        raise UncertainCount(f"{total}, {again} and no fewer than {len(on_axis)}")
-    found = located(s, box, total, most=most) if total > 0 else []
-    modes = [_checked(s, f, m, found.count(m.kx) > 1) for m in with_directions(s, found)]
+    if total != recount or len(on_axis) > total:
+        raise UncertainCount(f"{total}, {recount} and no fewer than {len(on_axis)}")
+    kx = located(s, box, total, most=most) if total > 0 else []
+    modes = [_checked(s, f, m, kx.count(m.kx) > 1) for m in with_directions(s, kx)]
     return sorted(modes, key=lambda m: m.kx.real), total
 
 
 def _checked(s: SampledSlab, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
-    """A mode with its residual, and with how far it moves when the layers' last bits do; of a cluster only the middle is known."""
+    """A mode with its residual, and with the change that rounding errors of the layers make; of a cluster the middle is known."""
     size = abs(mode.kx)
     residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
     k, step = refine(dispersion_of(s.rounded()), mode.kx, 1e-3 * size)
@@ -77,7 +77,7 @@ def _checked(s: SampledSlab, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
     return mode._replace(residual=residual, error=error if math.isfinite(error) else math.inf)
 
 
-#: D of a scene, made more lossy by some loss: `dispersion_of` or what has the same zeros in the boxes that are searched.
+#: D of a slab with a relative loss added: `dispersion_of`, or a function with the same zeros in the boxes that are searched.
 DispersionOf = Callable[[SampledSlab, float], Dispersion]
 
 
@@ -89,29 +89,29 @@ def located(
     most: float = math.inf,
     of: DispersionOf = dispersion_of,
 ) -> list[complex]:
-    """The `total` zeros of a box, those of a lossless slab on the axis by changes of sign if that finds them all.
+    """The `total` zeros in a box, those of a lossless slab by changes of sign if all lie on the axis.
 
-    TooManyModes where more than `many` have to be found otherwise, or it takes too long (`most`: see `zeros`).
+    TooManyModes if more than `many` have to be located by halving boxes, or if that takes too long (`most`: see `zeros`).
     """
     f = of(s, 0.0)
     if s.lossless and box.low < 0 < box.high:
         for samples in (600, 4800, 38_400):
-            found = real_zeros(f, box.left, box.right, samples, 8 * many)
-            if len(found) >= total:
-                return found
+            on_axis = real_zeros(f, box.left, box.right, samples, 8 * many)
+            if len(on_axis) >= total:
+                return on_axis
     if total > many:
         raise TooManyModes
     return zeros(f, box, box.right, total, most)
 
 
-def with_directions(s: SampledSlab, found: list[complex], of: DispersionOf = dispersion_of) -> list[Mode]:
+def with_directions(s: SampledSlab, kx: list[complex], of: DispersionOf = dispersion_of) -> list[Mode]:
     """Zeros as modes, forward or backward."""
-    return [Mode(k, _direction(s, k, found.count(k) > 1, of), 0.0) for k in found]
+    return [Mode(k, _direction(s, k, kx.count(k) > 1, of), 0.0) for k in kx]
 
 
 def _direction(s: SampledSlab, k: complex, cluster: bool, of: DispersionOf) -> int:
-    """+1 where the mode decays, or would with a trace of loss, along +Re kx."""
-    # a cluster is known to half the digits only, and takes more loss to be told
+    """+1 if the mode decays along +Re kx, or would with a small loss."""
+    # a cluster is known to half the digits only, and needs more loss to show its direction
     blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
     if abs(k.imag) > blur * abs(k):
         return 1 if k.imag > 0 else -1

@@ -1,9 +1,9 @@
-"""Poles that a contour leaves on its wrong side: guided and leaky modes, found and put right.
+"""Misplaced poles: guided and leaky modes on the wrong side of a contour, located with discs for their residues.
 
-A forward mode belongs above the contour on the right half of the axis, a backward mode (its energy runs against its phase,
-which negative densities and moduli allow) below it: limiting absorption. A contour below the axis leaves backward modes above
-it. Few of them get small circles, whose sums are their residues. Where they are many, and begin beyond the forward ones,
-the contour crosses the axis between the two kinds instead.
+By limiting absorption a forward mode belongs above the contour on the right half of the axis, and a backward mode (its energy
+flows against its phase, which negative densities and moduli allow) below it. A contour below the axis leaves backward modes
+above it. Up to MOST_WRONG of them get small circles, whose sums are their residues. Where more than that lie beyond all forward
+ones, the contour crosses the axis between the two kinds instead.
 """
 
 from __future__ import annotations
@@ -19,22 +19,21 @@ from ..response.sampled_slab import SampledSlab, on_the_right
 from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
 from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, with_directions
 
-#: A mode nearer to the real axis than this, over k0, may be on either side by rounding: a layer without loss beside others with.
+#: Rounding may put a mode that lies nearer to the real axis than this, over k0, on either side (lossless layers beside lossy ones).
 ON_AXIS = 1e-10
-#: A contour leaves at most so many modes on its wrong side, and the search for them takes at most so many values of D.
+#: The most poles that may be misplaced, and the most values of D that the search for them may take.
 MOST_WRONG = 24
 MOST_VALUES = 100_000
-#: From how many circles on a crossing is looked for.
-FEW_CIRCLES = 8
-#: Steps along an outline, over its largest Re kx, that are not halved further: a zero lies on it.
+#: A crossing is searched for if there are more circles than this.
+WITHOUT_CROSSING = 8
+#: Steps along an outline that are shorter than this, over its largest Re kx, are not halved: a zero lies on it.
 FINEST = 1e-12
 
 
 class MisplacedPoles(NamedTuple):
     """Poles on the wrong side of a contour.
 
-    The contour passes below the axis up to Re kx = `crossing` and above it beyond; no pole lies within `gap` of where it
-    crosses.
+    The contour runs below the axis up to Re kx = `crossing` and above it beyond; no pole lies within `gap` of the crossing.
     """
 
     poles: tuple[complex, ...]
@@ -44,7 +43,7 @@ class MisplacedPoles(NamedTuple):
 
 
 NONE = MisplacedPoles((), ())
-#: More modes than can be told apart.
+#: More modes than a search can separate.
 UNCLEAR = MisplacedPoles((complex("nan"),), (0.0,))
 
 
@@ -59,22 +58,22 @@ def misplaced(s: SampledSlab, depth: float, band: float, start: float) -> Mispla
     Returns
     -------
     MisplacedPoles
-        UNCLEAR where neither circles nor a crossing serve.
+        UNCLEAR where both circles and a crossing fail.
     """
     if not s.may_guide_backward:
         return NONE
     s = s.up_to_wall()
-    found = _with_circles_alone(s, depth, band, start)
-    if s.backward_branch is not None or (found is not UNCLEAR and len(found.poles) <= FEW_CIRCLES):
-        return found
+    circled = _with_circles_alone(s, depth, band, start)
+    if s.backward_branch is not None or (circled is not UNCLEAR and len(circled.poles) <= WITHOUT_CROSSING):
+        return circled
     try:
-        return _with_crossing(s, depth, band, start) or found
+        return _with_crossing(s, depth, band, start) or circled
     except TooManyModes:
-        return found
+        return circled
 
 
 def _with_circles_alone(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles:
-    """Circles around the poles that a contour below the axis leaves above it; UNCLEAR where they are too many."""
+    """Circles around the poles that a contour below the axis leaves above it; UNCLEAR if these are too many."""
     try:
         return with_discs(s, _below(s, depth, band, start))
     except TooManyModes:
@@ -91,62 +90,62 @@ def _below(s: SampledSlab, depth: float, band: float, start: float) -> list[Mode
         return _beside_cut(s, cut.real, (start, band, depth), (edge, above))
     if not s.lossless and not _any_mode(s, Box(start, band, -depth, 0.0), edge, above):
         return []
-    found = few_modes(s, Box(start, min(edge, band), -depth, 0.0))
+    modes = modes_in(s, Box(start, min(edge, band), -depth, 0.0))
     if band > edge:
-        found += few_modes(s, Box(edge, band, -depth, above))
-    return found
+        modes += modes_in(s, Box(edge, band, -depth, above))
+    return modes
 
 
 def _beside_cut(
     s: SampledSlab, cut: float, contour: tuple[float, float, float], lifted: tuple[float, float]
 ) -> list[Mode]:
-    """The same where a branch cut leads from Re kx = `cut` downward: boxes end on either side of it."""
+    """`_below` where a branch cut leads downward from Re kx = `cut`: boxes end on either side of it."""
     (start, band, depth), (edge, above) = contour, lifted
-    found = []
+    modes = []
     ends = [start, cut * (1 - BESIDE), cut * (1 + BESIDE), s.last_branch * (1 - BESIDE), edge, band]
     for left, right in itertools.pairwise(sorted({min(max(end, start), band) for end in ends})):
         if right - left > 3 * BESIDE * cut:
-            found += few_modes(s, Box(left, right, -depth, above if left >= edge else 0.0))
-    return found
+            modes += modes_in(s, Box(left, right, -depth, above if left >= edge else 0.0))
+    return modes
 
 
 def with_discs(
-    s: SampledSlab, found: list[Mode], others: tuple[complex, ...] = (), of: DispersionOf = dispersion_of
+    s: SampledSlab, modes: list[Mode], forward: tuple[complex, ...] = (), of: DispersionOf = dispersion_of
 ) -> MisplacedPoles:
-    """Discs around the backward ones among some modes; `others` are misplaced too."""
-    groups = _grouped([*(m.kx for m in found if m.direction < 0), *others])
+    """Discs around the backward modes among `modes`, and around misplaced `forward` modes (kx)."""
+    groups = _grouped([*(m.kx for m in modes if m.direction < 0), *forward])
     middles = tuple(sum(group) / len(group) for group in groups)
-    all_of_them = [*(m.kx for m in found), *others]
-    discs = (_free_disc(s, of(s, 0.0), k, group, all_of_them) for k, group in zip(middles, groups, strict=True))
+    known = [*(m.kx for m in modes), *forward]
+    discs = (_free_disc(s, of(s, 0.0), k, group, known) for k, group in zip(middles, groups, strict=True))
     return MisplacedPoles(middles, tuple(discs))
 
 
 def _branch_beside(s: SampledSlab) -> float:
-    """Re kx of the nearest branch point beside the axis, where outlines take more nodes."""
+    """Re kx of the nearest branch point beside the axis, where outlines have additional nodes."""
     return min(s.real_branches, default=s.last_branch)
 
 
 def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
-    """Whether there is a mode in a box, its upper side raised by `above` to the right of `edge`: one search, mostly in vain."""
+    """Whether there is a mode in a box whose upper side is raised by `above` to the right of `edge`: mostly there is none."""
     values = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
     left, right, low, high, near, beyond, lift = values
     path = outlines(left, right, low, high, 48, near, (beyond, lift))[0]
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
-def few_modes(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> list[Mode]:
-    """All modes of a box, those on the axis by changes of sign; TooManyModes if they are many, or not all are found."""
+def modes_in(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> list[Mode]:
+    """All modes in a box; TooManyModes if there are more than MOST_WRONG, or if not all can be located."""
     total = winding(of(s, 0.0), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
     if total <= 0:
         return []
-    found = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
-    if len(found) < total:
+    zeros_of_d = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
+    if len(zeros_of_d) < total:
         raise TooManyModes
-    return with_directions(s, found, of)
+    return with_directions(s, zeros_of_d, of)
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
-    """Modes that lie so near to each other that one circle goes around them all: a cluster is found to half the digits only."""
+    """Clusters of modes that share a circle, because their members are known to half the digits only."""
     groups: list[list[complex]] = []
     for k in modes:
         near = [group for group in groups if abs(k - group[0]) < 10 * CLUSTER * abs(k)]
@@ -157,13 +156,13 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
     return groups
 
 
-def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], others: list[complex]) -> float:
-    """Radius of a disc around a group of modes that holds no other mode, known or not, and no branch point."""
+def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], known: list[complex]) -> float:
+    """Radius of a disc around a group of modes that holds no mode outside the group, known or not, and no branch point."""
     branches = (complex(on_the_right(b)) for b in s.branch_points)
-    radius = 0.4 * min((abs(k - other) for other in (*others, *branches) if other not in group), default=abs(k))
+    radius = 0.4 * min((abs(k - point) for point in (*known, *branches) if point not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
     circle = np.exp(2j * np.pi * np.arange(24) / 24)
-    least = max(1e-6 * abs(k), 4 * max(abs(k - one) for one in group))
+    least = max(1e-6 * abs(k), 4 * max(abs(k - mode) for mode in group))
     at_least = winding(f, k + least * circle, 1e-12 * abs(k), MOST_VALUES)
     while radius > least and winding(f, k + radius * circle, 1e-9 * radius, MOST_VALUES) > at_least:
         radius /= 2
@@ -174,17 +173,17 @@ def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], 
 
 # --- a contour that crosses the axis ----------------------------------------------------------------------
 
-#: Among how many places, between the last branch point and the band's end, the crossing is looked for.
+#: Number of places for a crossing that are compared, between the last branch point and the band's end.
 PLACES = 24
-#: Relative loss with which modes are counted here, first the least. A passive slab with loss has no pole on the axis, whatever the
-#: loss: modes stay above or below it, and crowd less.
+#: Relative losses with which modes are counted for a crossing, in this order. A passive slab with loss has no pole on the axis: with
+#: more loss modes stay on their side of it, and lie further apart.
 LOSSES = (1e-8, 1e-5)
-#: The most values of D for one interval between two places.
-MOST_HERE = 20_000
+#: The most values of D for an interval between two places.
+MOST_PER_INTERVAL = 20_000
 
 
 def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles | None:
-    """A contour that crosses the axis where it leaves the fewest poles misplaced; None where they are still too many."""
+    """A contour that crosses the axis where that leaves the fewest poles misplaced; None if these are still too many."""
     edge = s.last_branch * (1 + 1e-3)
     if band < 1.1 * edge:
         return None
@@ -200,19 +199,19 @@ def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> M
 
 
 def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> np.ndarray:
-    """How many modes there are from the axis to `height`, up to the end of each interval between two places.
+    """Number of modes between the axis and `height`, cumulative over the intervals between two places.
 
-    Intervals are taken from the left (`onward` 1) or from the right (-1), until there are too many: inf from there on.
+    Intervals are added up from the left (`onward` 1) or from the right (-1) to MOST_WRONG modes, and are inf from there on.
     """
     counts = np.full(places.size - 1, np.inf)
     total = 0.0
     for i in range(counts.size)[::onward]:
         box = Box(float(places[i]), float(places[i + 1]), min(height, 0.0), max(height, 0.0))
         try:
-            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_HERE, thorough=True)
+            here = winding(f, box.outline(24), FINEST * float(places[-1]), MOST_PER_INTERVAL, thorough=True)
         except TooManyModes:
             break
-        if here < 0:  # D has no poles: too few steps where modes crowd
+        if here < 0:  # D has no poles: the outline has too few nodes for a cluster of modes
             break
         total += here
         if total > MOST_WRONG:
@@ -224,24 +223,24 @@ def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> n
 def _crossing_at(
     s: SampledSlab, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
 ) -> MisplacedPoles:
-    """The crossing in the longest run of places where the fewest are wrong, and circles around those."""
+    """The crossing in the longest run of places with the fewest misplaced poles, and circles around these."""
     depth, band, start = contour
     least = np.flatnonzero(wrong == wrong.min())
     runs = np.split(least, np.flatnonzero(np.diff(least) > 1) + 1)
     run = max(runs, key=lambda v: places[v[-1] + 1] / places[v[0] + 1])
-    lo, hi = float(places[run[0] + 1]), float(places[run[-1] + 1])
-    crossing, gap = _free_gap(f, lo, hi, depth, float(places[0]), band)
+    low, high = float(places[run[0] + 1]), float(places[run[-1] + 1])
+    crossing, gap = _free_gap(f, low, high, depth, float(places[0]), band)
     known = _below(s, depth, crossing, start)
     box = Box(crossing, band, 0.0, depth)
     total = winding(f, box.outline(48), FINEST * band, MOST_VALUES, thorough=True)
-    forward = _found_above(s, f, box, total)
+    forward = _forward_modes(s, f, box, total)
     return with_discs(s, known, forward)._replace(crossing=crossing, gap=gap)
 
 
-def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, band: float) -> tuple[float, float]:
-    """Where between `lo` and `hi` to cross the axis, and the distance around it in which there is no mode."""
-    crossing = math.sqrt(lo * hi)
-    gap = min(crossing - edge, band - crossing) if hi > lo else 0.3 * min(crossing - edge, band - crossing)
+def _free_gap(f: Dispersion, low: float, high: float, depth: float, edge: float, band: float) -> tuple[float, float]:
+    """A crossing of the axis between `low` and `high`, and the distance around it in which there is no mode."""
+    crossing = math.sqrt(low * high)
+    gap = min(crossing - edge, band - crossing) * (1.0 if high > low else 0.3)
     for _ in range(8):
         box = Box(crossing - gap, crossing + gap, -max(depth, gap), max(depth, gap))
         if winding(f, box.outline(24), FINEST * band, MOST_VALUES) == 0:
@@ -250,37 +249,37 @@ def _free_gap(f: Dispersion, lo: float, hi: float, depth: float, edge: float, ba
     raise TooManyModes
 
 
-def _found_above(s: SampledSlab, f: Dispersion, box: Box, total: int) -> tuple[complex, ...]:
+def _forward_modes(s: SampledSlab, f: Dispersion, box: Box, total: int) -> tuple[complex, ...]:
     """The `total` forward modes of a box above the axis, which a contour above the axis leaves below it."""
     if total <= 0:
         return ()
-    found = zeros(f, box, box.right, total, MOST_VALUES)
-    if len(found) < total:
+    with_loss = zeros(f, box, box.right, total, MOST_VALUES)
+    if len(with_loss) < total:
         raise TooManyModes
-    return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in found)
+    return tuple(refine(dispersion_of(s), k, 1e-4 * abs(k))[0] for k in with_loss)
 
 
-#: Losses among which one is named where poles cannot be told apart, relative to each density and modulus.
+#: Relative losses that a refusal may propose where poles cannot be separated, of each density and modulus.
 REMEDIES = 10.0 ** np.arange(-6, 1)
 
 
 def enough_loss(s: SampledSlab, depths: Sequence[float], band: float, start: float) -> float | None:
-    """The least of some relative losses of every layer and half-space with which the poles can be told apart; None if none does.
+    """The least of REMEDIES with which the poles can be separated at any of `depths`; None if there is none.
 
-    At one of some depths, those that the search for a contour would try, by circles alone: places for a crossing take ten times as
-    long to find. More loss moves more modes away from the axis: the largest is tried first, then the middle of those that are left.
+    By circles alone, because a search for a crossing takes ten times as long. More loss moves more modes away from the axis: the
+    largest is tried first, then by bisection.
     """
 
-    def does(loss: float) -> bool:
+    def separates(loss: float) -> bool:
         lossy = s.with_loss(loss).up_to_wall()
         return any(_with_circles_alone(lossy, depth, band, start) is not UNCLEAR for depth in depths)
 
-    if not does(float(REMEDIES[-1])):
+    if not separates(float(REMEDIES[-1])):
         return None
     too_little, enough = -1, REMEDIES.size - 1
     while enough - too_little > 1:
         middle = (too_little + enough) // 2
-        if does(float(REMEDIES[middle])):
+        if separates(float(REMEDIES[middle])):
             enough = middle
         else:
             too_little = middle
@@ -290,10 +289,10 @@ def enough_loss(s: SampledSlab, depths: Sequence[float], band: float, start: flo
 # --- many frequencies -------------------------------------------------------------------------------------
 
 
-def some_misplaced(s: SampledSlab, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
-    """Whether a contour at `depth` may leave modes on its wrong side, by the argument principle at F frequencies at once: (F,).
+def any_misplaced(s: SampledSlab, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
+    """Whether a contour at `depth` may have misplaced poles, by the argument principle at F frequencies at once: (F,).
 
-    Of a lossless slab any mode below or on the axis counts, forward or not.
+    Of a lossless slab every mode below or on the axis is counted, also forward ones.
     """
     if not s.may_guide_backward:
         return np.zeros(depth.shape, bool)

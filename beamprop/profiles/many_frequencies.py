@@ -118,7 +118,7 @@ def _taken(route: Route, rows: np.ndarray) -> Route:
 
 def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
     """Where the contours leave a guided mode on their wrong side, (F,)."""
-    wrong = misplaced.some_misplaced(s, 1.1 * plan.sigma, plan.band)
+    wrong = misplaced.any_misplaced(s, 1.1 * plan.sigma, plan.band)
     for i in np.flatnonzero(wrong) if s.lossless else []:  # what was counted may be forward
         slab = s.take(int(i))
         start = min(1e-3 * slab.k0, 0.1 * slab.nearest_branch)

@@ -1,4 +1,4 @@
-"""The response with what rounding leaves uncertain in it: by a second evaluation, and by the waves' form where the first is bad."""
+"""The response with its estimated rounding error, by a second evaluation; by the form of `reflection.py` where that is more exact."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from .slab import Response, solve
 
 #: By how much (relative) inputs and terms are moved for the second evaluation.
 SHIFT = 2.0**-47
-#: An error of the march above this, some times SHIFT, for each 32 layers, is more than the layers' own rounding: the waves'
-#: form is asked too.
+#: An estimated error of the recursion above this (7 SHIFT) for each 32 layers exceeds the layers' own rounding: the form of
+#: `reflection.py` is evaluated too.
 DOUBTFUL = 5e-14
 #: Rounding that no perturbation shows.
 ROUNDING = 4 * 2.0**-52
@@ -41,12 +41,12 @@ def solve_checked(
     omega: np.ndarray,
     kx: np.ndarray,
 ) -> Checked:
-    """`solve` with estimated errors, and more exactly where the march of (p, q) cancels."""
+    """`solve` with estimated errors, and more exactly where the recursion of (p, q) cancels."""
     kx = np.broadcast_to(kx, np.broadcast_shapes(omega.shape, np.shape(kx))).astype(complex, copy=False)
-    with np.errstate(all="ignore"):  # on a pole the march divides by 0, and is told to be wrong
+    with np.errstate(all="ignore"):  # on a pole the recursion divides by 0, and its error is infinite
         one = solve(segments, before, after, omega, kx)
         two, moved = _moved(segments, before, after, omega, kx)
-    # r and t share a denominator, and the rounding of the march may show in one alone: see `_moved`
+    # r and t share a denominator, and the rounding of the recursion may show in one of them only: see `_moved`
     r_error, t_error = _errors(one.r, one.t, two.r, two.t)
     larger = np.maximum(r_error, t_error)
     limit = DOUBTFUL * max(1.0, sum(s.periods * len(s.layers.thickness) for s in segments) / 32)
@@ -107,7 +107,7 @@ def _with_rounding(c: Checked) -> Checked:
 
 
 def _by_waves(out: Checked, stack: Stack, kx: np.ndarray, moved: np.ndarray, i: int, at: np.ndarray) -> None:
-    """Put the waves' answers at frequency i and kx `at` in the place of the march's where they are better."""
+    """Replace the recursion's answers at frequency i and kx `at` by those of `reflection.py` where these are more exact."""
     r, t = reflect(stack, kx[i, at])
     errors = _errors(r, t, *reflect(stack, moved[i, at], SHIFT))
     apart = _errors(out.r[i, at], out.t[i, at], r, t)
@@ -115,6 +115,6 @@ def _by_waves(out: Checked, stack: Stack, kx: np.ndarray, moved: np.ndarray, i: 
     for old, new in zip((out.r, out.t), (r, t), strict=True):
         old[i, at[better]] = new[better]
     for old, own, difference in zip((out.r_error, out.t_error), errors, apart, strict=True):
-        # what is kept is as wrong as it differs from the other form, less what that one may be wrong by itself
+        # an answer that is kept has at least the difference of the two forms, less the error of `reflection.py`, as its error
         own = np.minimum(own, 1e300)
         old[i, at] = np.where(better, own, np.maximum(old[i, at], np.where(own < 1, difference - own, 0.0)))

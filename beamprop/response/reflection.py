@@ -1,11 +1,11 @@
-"""r and t from the two waves of each medium: the form that keeps full precision where the march of (p, q) cancels.
+"""r and t from the two waves of each medium: the form that keeps full precision where the recursion of (p, q) cancels.
 
 In a medium with the waves u = q/p = +-i kz/rho_z =: +-i Y the state is (a + b, i Y (a - b)). Across a face, from the medium
 behind (Y') to the one in front (Y), ::
 
     a = (S a' + D b') / 2 Y,   b = (D a' + S b') / 2 Y,   S = Y + Y',   D = Y - Y',
 
-and back through a layer a gains exp(-i kz d), b exp(+i kz d). The march of (p, q) rounds p and q to EPS of their sizes, that
+and back through a layer a gains exp(-i kz d), b exp(+i kz d). The recursion of (p, q) rounds p and q to EPS of their sizes, that
 is, it adds EPS of every wave to every other: an error that grows by exp(2 |kz| d) in a layer behind which the physical
 wave is the one that decays on the way back, as it does where S is nearly 0 (surfaces of negative density or modulus). Here waves do not
 mix but by S and D, so it is enough to have those to a relative EPS. The smaller one is a quotient of differences of
@@ -14,7 +14,7 @@ cancels then in S a' + D b' is a resonance, which the last bits of thickness and
 
 Errors: EPS (relative) of each S, D and exp(i kz d), and EPS of the terms of Y^2 - Y'^2. `reflect` takes a `shift` that
 perturbs just these, so that a second evaluation shows what they do. Where kz d -> 0 in a layer, the two waves are one and the
-form itself loses; the march of (p, q) serves there.
+form itself loses precision; the recursion of (p, q) is used there.
 
 Segments of many periods enter as one medium with their Bloch waves, q/p to EPS.
 """

@@ -149,7 +149,6 @@ STEPS = [
         "straight contours and FFTs where they are cheaper", coarse_in_z, straight, "fft_is_cheaper", lambda *_: False
     ),
     Step("cells as polynomials in kx², 101 frequencies", widths, cell, "_fitted", never),
-    Step("powers of periods by two tables", coarse_map, interior, "TABLE", NEVER_SO_MANY),
     Step("two waves in a thick layer", air, interior, "_steady", never),
 ]
 
