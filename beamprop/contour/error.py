@@ -91,6 +91,13 @@ class Sampled(NamedTuple):
     contour: Contour
     h: np.ndarray
     amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
+    fields: np.ndarray | None = None  #: their p at the positions that are compared, (B, Z, X), if it is known
+
+
+def fields_of(checks: Checks, sampled: Sampled) -> np.ndarray:
+    """p of the beams that are summed at the positions that are compared: (B, Z, X)."""
+    x = checks.x - checks.sources.beam.centre
+    return np.asarray(sums.direct_sum(sampled.contour, sampled.h, *sampled.amplitudes, x))
 
 
 def sampled(checks: Checks, contour: Contour, moved: bool) -> Sampled:
@@ -160,7 +167,7 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     extremes = _extreme_beams(sources)
     summed, themselves = _summed(checks, first, extremes, x)
     a = sources.interpolated_to(summed)
-    b = sources.interpolated_to(np.asarray(sums.direct_sum(second.contour, second.h, *second.amplitudes, x)))
+    b = sources.interpolated_to(fields_of(checks, second) if second.fields is None else second.fields)
     largest = _largest(checks, a, b)
     seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
     scale = np.where(seen, largest, 1.0)

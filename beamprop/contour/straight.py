@@ -53,7 +53,9 @@ def quadrature_on_straight_contours(
         planned = with_poles(search, planned)
         if planned.any_misplaced:
             break
-        second = second or error.sampled(search.checks, pair_of_contours(search, planned)[1], True)
+        if second is None:
+            second = error.sampled(search.checks, pair_of_contours(search, planned)[1], True)
+            second = second._replace(fields=error.fields_of(search.checks, second))
         contour = paths.straight_contour(straight._replace(window=n * dx))
         first = error.sampled(search.checks, contour, False)
         budget = error.estimate(search.checks, first, second).budget

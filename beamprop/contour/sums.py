@@ -48,11 +48,10 @@ def direct_sum(contour: Contour, h: np.ndarray, right: np.ndarray, left: np.ndar
     if contour.k.size > block:
         parts = [slice(start, start + block) for start in range(0, contour.k.size, block)]
         sums = (
-            direct_sum(Contour(contour.k[p], contour.weight[p], contour.step), h[:, p], right[..., p], left[..., p], x)
-            for p in parts
+            direct_sum(Contour(contour.k[p], contour.weight[p]), h[:, p], right[..., p], left[..., p], x) for p in parts
         )
         return functools.reduce(np.add, sums)
-    forth, back = _phases(contour.k, x, bool(np.any(left)), contour.step)
+    forth, back = _phases(contour.k, x, bool(np.any(left)))
     if right.ndim == 1 and h.shape[0] > 2:
         both = right[:, None] * forth
         if back is not None:
@@ -110,19 +109,12 @@ def grid_of(x: np.ndarray) -> Grid:
 TABLE, STEP = 64, 32
 
 
-def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if `both`, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
-
-    `dk` is the spacing of even nodes k, if they are.
-    """
+def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    """e^{ikx} and, if `both`, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small."""
     # plain: forth = exp(i k x), back = exp(-i k x)
     ik = 1j * k[:, None]
     grid = grid_of(x) if x.size >= TABLE else None
     if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
-        if dk and k.size >= TABLE:
-            coarse, fine = np.exp(ik[::STEP] * x), np.exp(1j * dk * np.arange(STEP)[:, None] * x)
-            forth = _inner(coarse, fine, k.size)
-            return forth, _inner(1 / coarse, 1 / fine, k.size) if both else None
         forth = np.exp(ik * x)
         return forth, 1 / forth if both else None
     starts = grid.start + grid.step * np.arange(0, x.size, STEP)
@@ -140,11 +132,6 @@ def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[
 def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
     out = coarse[:, :, None] * fine[:, None, :]
     return out.reshape(coarse.shape[0], -1)[:, :count]
-
-
-def _inner(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
-    out = coarse[:, None, :] * fine[None, :, :]
-    return out.reshape(-1, coarse.shape[1])[:count]
 
 
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
