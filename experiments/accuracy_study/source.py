@@ -10,7 +10,7 @@ import numpy as np
 import beamprop as bp
 
 #: The most products of kx and samples that are summed in long double.
-MOST_LONG = 30_000_000
+MOST_LONG = 3_000_000
 
 
 class Source:
