@@ -61,10 +61,9 @@ def check_points(
     near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
-    own = centre + source * np.linspace(-1, 1, around)
     ends = _towards_ends(x, xs, source)
-    even = xs[::2] if ends.size else xs
-    return np.concatenate([even, own, ends]), np.unique([*pick, *near])
+    own = centre + source * np.linspace(-1, 1, around // 2 if ends.size else around)
+    return np.concatenate([xs, own, ends]), np.unique([*pick, *near])
 
 
 def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
@@ -75,7 +74,8 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
     apart = float(np.max(np.diff(picked), initial=0.0))
     if apart <= 2 * source:
         return np.empty(0)
-    steps = np.geomspace(source, apart, 2 + math.ceil(2 * math.log2(apart / source)))
+    octaves = math.log2(apart / source)
+    steps = np.geomspace(source, apart, 2 + math.ceil(min(4 * octaves, max(20, 2 * octaves))))
     wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
     order = np.sort(x)
     return order[np.clip(np.searchsorted(order, wanted), 0, x.size - 1)]

@@ -337,12 +337,9 @@ def direct_sum(line: Line, h: np.ndarray, right: np.ndarray, left: np.ndarray, x
     block = max(1, MOST_PHASES // max(1, x.size))
     if line.k.size > block:
         parts = [slice(start, start + block) for start in range(0, line.k.size, block)]
-        sums = (
-            direct_sum(Line(line.k[p], line.weight[p], line.step), h[:, p], right[..., p], left[..., p], x)
-            for p in parts
-        )
+        sums = (direct_sum(Line(line.k[p], line.weight[p]), h[:, p], right[..., p], left[..., p], x) for p in parts)
         return functools.reduce(np.add, sums)
-    forth, back = _phases(line.k, x, bool(np.any(left)), line.step)
+    forth, back = _phases(line.k, x, bool(np.any(left)))
     if right.ndim == 1 and h.shape[0] > 2:
         both = right[:, None] * forth
         if back is not None:
@@ -398,19 +395,12 @@ def grid_of(x: np.ndarray) -> Grid:
 TABLE, STEP = 64, 32
 
 
-def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small.
-
-    `dk` is the spacing of even nodes k, if they are.
-    """
+def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.ndarray | None]:
+    """e^{ikx} and, if asked for, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small."""
     # plain: forth = exp(i k x), back = exp(-i k x)
     ik = 1j * k[:, None]
     grid = grid_of(x) if x.size >= TABLE else None
     if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
-        if dk and k.size >= TABLE:
-            coarse, fine = np.exp(ik[::STEP] * x), np.exp(1j * dk * np.arange(STEP)[:, None] * x)
-            forth = _inner(coarse, fine, k.size)
-            return forth, _inner(1 / coarse, 1 / fine, k.size) if both else None
         forth = np.exp(ik * x)
         return forth, 1 / forth if both else None
     starts = grid.start + grid.step * np.arange(0, x.size, STEP)
@@ -428,11 +418,6 @@ def _phases(k: np.ndarray, x: np.ndarray, both: bool, dk: float = 0.0) -> tuple[
 def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
     out = coarse[:, :, None] * fine[:, None, :]
     return out.reshape(coarse.shape[0], -1)[:, :count]
-
-
-def _inner(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
-    out = coarse[:, None, :] * fine[None, :, :]
-    return out.reshape(-1, coarse.shape[1])[:count]
 
 
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
