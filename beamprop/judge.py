@@ -62,7 +62,7 @@ def check_points(
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     ends = _towards_ends(x, xs, source)
-    own = centre + source * np.linspace(-1, 1, around // 2 if ends.size else around)
+    own = centre + source * np.linspace(-1, 1, around // 4 if ends.size else around)
     return np.concatenate([xs, own, ends]), np.unique([*pick, *near])
 
 
