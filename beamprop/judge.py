@@ -46,6 +46,7 @@ class Sampled(NamedTuple):
     line: Line
     h: np.ndarray
     amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
+    sums: np.ndarray | None = None  #: their p at the positions that are compared, (B, Z, X), if it is known
 
 
 def check_points(
@@ -150,6 +151,12 @@ def sampled(checks: Checks, line: Line, moved: bool) -> Sampled:
     check_contour(line.k.size, checks.fan.angles.size, checks.z.size)
     h = checks.transfer(line.k, checks.z, SHIFT if moved else 0.0)
     return Sampled(line, h, amplitudes(checks.k0, checks.fan, line))
+
+
+def summed(checks: Checks, what: Sampled) -> np.ndarray:
+    """p of the beams that are summed at the positions that are compared: (B, Z, X)."""
+    right, left = what.amplitudes
+    return np.asarray(spectral.direct_sum(what.line, what.h, right, left, checks.x - checks.fan.beam.centre))
 
 
 class Survey(NamedTuple):
@@ -310,7 +317,7 @@ def _difference(checks: Checks, one: Sampled, two: Sampled) -> tuple[np.ndarray,
         right, left = (np.concatenate(pair) for pair in pairs)
     own = np.asarray(spectral.direct_sum(one.line, one.h, right, left, x))
     a = fan.mixed(own[: fan.angles.size])
-    b = fan.mixed(np.asarray(spectral.direct_sum(two.line, two.h, right2, left2, x)))
+    b = fan.mixed(summed(checks, two) if two.sums is None else two.sums)
     largest = np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2))  # (A, Z)
     largest = np.maximum(largest, checks.bright)
     seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark

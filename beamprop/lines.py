@@ -369,6 +369,7 @@ def _straight_solution(search: _Search, x: np.ndarray) -> Solution | None:
             return None
         if second is None:
             second = judge.sampled(checks, search.lines()[1], True)
+            second = second._replace(sums=judge.summed(checks, second))
         line = spectral.open_line(straight._replace(window=n * dx))
         first = judge.sampled(checks, line, False)
         error, _ = judge.difference(checks, first, second)
