@@ -185,7 +185,10 @@ def test_plane_waves_in_parts_are_the_same(monkeypatch):
     monkeypatch.setattr(memory, "WAVES_AT_A_TIME", 200)
     parts = bp.scattering(SLAB, f, kx=kx)
     for name in whole.data_vars:
-        np.testing.assert_allclose(parts[name], whole[name], rtol=1e-10, atol=1e-13)
+        if name.endswith("error_estimate"):  # what is estimated is rounding itself
+            assert np.all(abs(parts[name] - whole[name]) <= 0.5 * whole[name])
+        else:
+            np.testing.assert_allclose(parts[name], whole[name], rtol=1e-10, atol=1e-13)
 
 
 @pytest.mark.parametrize("even", [True, False])

@@ -287,7 +287,7 @@ class FluidSlab(NamedTuple):
 
     def up_to_wall(self) -> FluidSlab:
         """See `response.walls.up_to_wall`."""
-        return self._replace(segments=walls.up_to_wall(self.segments))
+        return self._replace(segments=walls.up_to_wall(self.segments)) if self.has_wall else self
 
     def parts_between_walls(self) -> list[tuple[SampledSlab, int]]:
         """See `response.walls.parts_between`."""
@@ -337,15 +337,9 @@ def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> Flu
         if np.all(np.isfinite(k)):
             branches.append(k)
     k0 = slab.before.wavenumber(frequency)
-    return FluidSlab(
-        slab_values(slab, frequency),
-        slab.before.at(frequency),
-        slab.after.at(frequency),
-        2 * np.pi * frequency[:, None],
-        slab.thickness,
-        k0 if np.iscomplexobj(frequency) else k0.real,
-        tuple(branches),
-    )
+    k0 = k0 if np.iscomplexobj(frequency) else k0.real
+    before, after, omega = slab.before.at(frequency), slab.after.at(frequency), 2 * np.pi * frequency[:, None]
+    return FluidSlab(slab_values(slab, frequency), before, after, omega, slab.thickness, k0, tuple(branches))
 
 
 def on_the_right(branch: Any) -> Any:

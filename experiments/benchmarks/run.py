@@ -18,8 +18,8 @@ from tqdm import tqdm
 
 import beamprop as bp
 from beamprop import response
-from beamprop.contour import paths
-from beamprop.profiles import landing, many_frequencies, routes
+from beamprop.contour import paths, stationary_phase
+from beamprop.profiles import many_frequencies, routes
 from beamprop.response import sampled_slab
 
 FREQUENCY = 2500.0
@@ -93,7 +93,7 @@ def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
     """A frequency's scene, and the line that `beam_width` takes for it."""
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     path = np.array([SLAB.thickness])
-    middle, half = landing.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)
+    middle, half = stationary_phase.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)
     plan = many_frequencies._plan(batch, BEAM, path, middle, half, 1e-8)
     return sampled_slab.sample(SLAB, frequency), paths.straight_contour(plan).k[0]
 

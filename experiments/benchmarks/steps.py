@@ -68,7 +68,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         {
             "the choice of a contour and its error estimate": ("contour/choose.py", "choose_contour"),
             "of it: poles on the wrong side": ("modes/misplaced.py", "misplaced"),
-            "of it: two contours compared": ("contour/error.py", "difference"),
+            "of it: two contours compared": ("contour/error.py", "estimate"),
             "all planes, by low rank": ("fields/evaluate.py", "fill_map"),
             "of it: cross approximation": ("fields/low_rank.py", "cross"),
             "of it: its planes summed": ("fields/evaluate.py", "fill"),
