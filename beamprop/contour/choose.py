@@ -36,10 +36,10 @@ def choose_contour(
     rtol: float,
     guided: bool = True,
 ) -> Quadrature:
-    """The cheapest contour on which the field keeps rtol, judged by a second contour of other parameters.
+    """The cheapest contour on which the field keeps rtol, its error estimated by a second contour of other parameters.
 
-    An even grid of many points gets a pair of straight contours for FFTs, judged by a bent path; any other a bent path, judged
-    by a second one. `guided` says whether the transfer knows guided modes (none without a slab).
+    An even grid of many points gets a pair of straight contours for FFTs, compared with a bent contour; any other a bent contour,
+    compared with a second one. `guided` says whether the transfer knows guided modes (none without a slab).
     """
     reach = _extent(s, sources, x, z, rtol)
     many = sources.weights is not None and sources.requested.size > ESTIMATED

@@ -1,21 +1,21 @@
 """Contours of integration over kx: their plans and nodes.
 
 A plain sum over equispaced real kx answers for a periodic array of beams: a lossless slab has guided modes, poles of t on
-the real axis beyond k0, beside the branch points at +-k0, and no window makes the sum converge. In open space the path of
+the real axis beyond k0, beside the branch points at +-k0, and no window makes the sum converge. In open space the contour of
 integration passes below what lies on the right half of the axis and above what lies on the left: the limit of vanishing
-absorption. h, the slab's response, is even in kx, so that half a path serves for both halves:
+absorption. h, the slab's response, is even in kx, so that half a contour serves for both halves:
 
     p(x) = sum_m w_m h(k_m) [ S(k_m) e^{i k_m x} + S(-k_m) e^{-i k_m x} ]
 
-Two paths do this, with X the largest distance from the beam's middle and kb the smallest |kx| of a branch point:
+Two kinds of contour do this, with X the largest distance from the beam's middle and kb the smallest |kx| of a branch point:
 
-**One bent path**, ``k = s - i depth erf(1.5 s/kb)``, s = (m + 1/2) ds: the trapezoid rule on an analytic path. Fewest modes, any
+**One bent contour**, ``k = s - i depth erf(1.5 s/kb)``, s = (m + 1/2) ds: the trapezoid rule on an analytic contour. Fewest plane waves, any
 x, one matrix product. Errors: aliasing ``exp(-depth W)``, W = 2 pi/ds, which must exceed X and the width of the field; rounding
 ``1e-16 exp(depth X)``; the edge of the spectrum, ``S h`` at the last k.
 
-**Two straight lines**, for FFTs on even grids of many points. With ``chi(k) = erfc(-k/delta)/2``, entire, 1 on the right and 0 on the
+**Two straight contours**, for FFTs on even grids of many points. With ``chi(k) = erfc(-k/delta)/2``, entire, 1 on the right and 0 on the
 left, the integral of ``S h chi(kx)`` is shifted to s - i sigma and that of ``S h chi(-kx)`` to s + i sigma: k_m = m ds - i sigma, w_m = chi(k_m)
-ds/2 pi. Errors, Z being the length of the path along z:
+ds/2 pi. Errors, Z being the distance along z:
 
 * images from the right, ``exp(-sigma W)``;
 * images from the left, ``exp(sigma W - D^2/(4/delta^2 + (Z delta/k0)^2))``, D = W - X - reach of the source: chi is a
@@ -73,7 +73,7 @@ class StraightPlan(NamedTuple):
     band: Any
 
     def other(self) -> StraightPlan:
-        """A plan that shares no number with this one, to judge it by."""
+        """A plan that shares no number with this one, to estimate its error by."""
         return StraightPlan(self.sigma * 1.1, self.delta * 0.93, self.window * 1.07, self.band)
 
 
@@ -144,7 +144,7 @@ class BentPlan(NamedTuple):
     gap: float = math.inf  #: half-width of the crossing
 
     def other(self) -> BentPlan:
-        """A plan that shares no number with this one, to judge it by."""
+        """A plan that shares no number with this one, to estimate its error by."""
         return self._replace(
             depth=self.depth * 0.87,
             window=self.window * 1.3,

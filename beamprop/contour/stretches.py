@@ -48,14 +48,14 @@ class Plan(NamedTuple):
     nodes: int = 20  #: Gauss nodes of a panel
 
     def other(self) -> Plan:
-        """A plan that shares no number with this one, to judge it by."""
+        """A plan that shares no number with this one, to estimate its error by."""
         return Plan(
             self.depth * 0.83, self.height * 0.8, self.slope * 0.8, self.band * 1.12, self.finer * 1.15, self.nodes + 3
         )
 
 
 def plan_stretches(reach: Extent, outside: float, rtol: float, noise: float) -> Plan:
-    """A first plan. `outside` is the length of the path along z in the half-spaces; `noise` the relative rounding of S h.
+    """A first plan. `outside` is the distance along z in the half-spaces; `noise` the relative rounding of S h.
 
     exp(depth X) magnifies rounding and what lies on the other side, as does exp(height Z) above the axis, where waves in the
     half-spaces grow.
@@ -184,7 +184,7 @@ def stretched_contour(s: SampledSlab, parts: list[Stretch], plan: Plan, across: 
         From 0, each beginning where the one before it ends; the last goes on to the band's end, off the axis.
     plan : Plan
     across, along : float, m
-        Length of the path along x, and along z in the half-spaces, over which phases turn.
+        Distance along x, and along z in the half-spaces, over which phases turn.
     """
     edges = np.concatenate(
         [_edges(s, _corners(part, plan), (across, along), plan.finer) for part in parts if part.lo < plan.band]
@@ -244,7 +244,7 @@ def pair_of_contours(
     ends: np.ndarray = NO_ENDS,
     closed: bool = False,
 ) -> tuple[Contour, Contour] | None:
-    """A contour in stretches and another to judge it by, circles around what they leave on the wrong side.
+    """A contour in stretches and another to estimate its error by, circles around what they leave on the wrong side.
 
     Parameters
     ----------

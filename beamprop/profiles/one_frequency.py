@@ -30,7 +30,7 @@ def measured_alone(
     level: float,
     guided: bool,
 ) -> tuple[float, float, float, int, float]:
-    """What `Measures` holds, at one frequency, across the plane z; `way` is z and the length of the path along z."""
+    """What `Measures` holds, at one frequency, across the plane z; `way` is z and the distance along z."""
     z, path = way
     plane = np.array([z])
     middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], plane), np.array([path])))
