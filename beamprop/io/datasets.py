@@ -20,6 +20,7 @@ from .._version import __version__
 from ..media import effective as _homogenize
 from ..media.fluids import Fluid
 from ..media.structures import Cell, Layer, Membrane, Slab
+from ..sources.base import Beam
 from ..sources.gaussian import GaussianBeam
 from ..sources.profile import Profile
 from ..sources.slits import Slits
@@ -42,6 +43,8 @@ _RECORDS: dict[str, type] = {
 }
 
 _KINDS = frozenset(_RECORDS.values())
+#: Of a source of the user's own its class and so much of its text are recorded [characters].
+MOST_TEXT = 1000
 
 
 def describe(value: Any, frequency: np.ndarray) -> Any:
@@ -66,6 +69,8 @@ def describe(value: Any, frequency: np.ndarray) -> Any:
     if callable(value):
         f = np.unique(frequency)
         return describe(_homogenize.Tabulated(tuple(f), tuple(np.asarray(value(f), complex))), frequency)
+    if isinstance(value, Beam):  # a source of the user's own, which no file can bring back
+        return {"source": f"{kind.__module__}.{kind.__qualname__}", "text": repr(value)[:MOST_TEXT]}
     raise TypeError(f"no record for {type(value).__name__}")
 
 
@@ -83,6 +88,8 @@ def rebuild(record: Any) -> Any:
     if isinstance(record, list):
         return tuple(rebuild(v) for v in record)
     if not isinstance(record, dict):
+        return record
+    if "source" in record:
         return record
     if "array" in record:
         return np.array([rebuild(v) for v in record["array"]])
@@ -121,6 +128,8 @@ def make(
 
 def provenance(ds: xr.Dataset) -> dict[str, Any]:
     """What a dataset records of its making, with slab, cell and beam rebuilt as objects.
+
+    Of a source that is not one of the package's own its class and its text are recorded, as a dict.
 
     Examples
     --------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -99,19 +100,55 @@ CANCELLED = _built(
 )._replace(kind=STEPPED)
 
 
+@dataclass(frozen=True, eq=False)
+class OwnSource:
+    """A user's own source: samples, by the members that every source has and none beside them.
+
+    It does not say what rounding leaves unknown of its spectrum, as `bp.Profile` does.
+    """
+
+    samples: bp.Profile
+    centre = 0.0
+    entire = True
+
+    @property
+    def angle(self) -> float:
+        return self.samples.angle
+
+    @property
+    def z0(self) -> float:
+        return self.samples.z0
+
+    def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
+        return self.samples.spectrum(kx, k0)
+
+    def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
+        return self.samples.profile(x, k0)
+
+    def reach(self, tolerance: float) -> float:
+        return self.samples.reach(tolerance)
+
+    def band(self, k0: float, tolerance: float) -> tuple[float, float]:
+        return self.samples.band(k0, tolerance)
+
+    def at_angle(self, angle: float) -> OwnSource:
+        return OwnSource(self.samples.at_angle(angle))
+
+
 def tilted_plateaus() -> Iterator[Case]:
     """Flat-topped profiles, 5000 to 7000 wavelengths wide, with a steep tilt, on their launch plane in cold air.
 
     All contours share k0 sin(angle), which is off by 1.9 units of its last place: the roundings of 2 pi f, of sqrt(rho/K), and of
     the sine go the same way at this frequency and angle. The phases k0 sin(angle) x are off by as much; and on the launch plane
-    nothing shows of the second response's last bits.
+    nothing shows of the second response's last bits. Of a `bp.Profile` the rounding of its samples is a term that covers it; a
+    user's own source need not tell it.
     """
     air, frequency = bp.Fluid.from_speed(1.225, 330.0), 3510.0
     for half in (2600, 3400, 3000):
         x = np.linspace(-1.6, 1.6, 161) * half * 330.0 / frequency
-        beam = bp.Profile(x, np.exp(-((x / x[-1] * 1.6) ** 8)), 0.0, 78.0)
+        samples = bp.Profile(x, np.exp(-((x / x[-1] * 1.6) ** 8)), 0.0, 78.0)
         slab = bp.Slab.uniform(air, 0.1, before=air, after=air)
-        yield _built(slab, beam, beam.x[27:134:3], [0.0], 1e-12, frequency)._replace(kind=LAUNCHED)
+        yield _built(slab, OwnSource(samples), samples.x[27:134:3], [0.0], 1e-12, frequency)._replace(kind=LAUNCHED)
 
 
 def first_numbers(kind: str, count: int) -> tuple[int, ...]:

@@ -35,11 +35,11 @@ def on_the_axis(case: Case) -> Truth:
 
 def as_launched(case: Case) -> Truth:
     """p exp(i k0 sin(angle) x) at samples of a profile about x = 0, its phases in 40 digits."""
-    beam = case.beam
+    beam, samples = case.beam, getattr(case.beam, "samples", case.beam)
     rho, _, K = (float(complex(v[0]).real) for v in case.slab.before.at(np.array([case.frequency])))
     with mp.workdps(40):
         k0 = 2 * mp.pi * mp.mpf(case.frequency) * mp.sqrt(mp.mpf(rho) / mp.mpf(K))
         tilt = k0 * mp.sin(mp.radians(mp.mpf(beam.angle)))
         turn = np.array([complex(mp.expj(tilt * mp.mpf(float(x)))) for x in case.x])
-    p = (beam.p[np.searchsorted(beam.x, case.x)] * turn)[None]
+    p = (samples.p[np.searchsorted(samples.x, case.x)] * turn)[None]
     return Truth(p, np.abs(p).max(axis=1), np.array([EPS]), np.zeros(1, bool), 0)
