@@ -9,7 +9,7 @@ from beamprop import conventions, response
 from beamprop.arrays import exponentials
 from beamprop.media.values import layer_values
 from beamprop.modes import argument_principle
-from beamprop.response import cell, interior, layer, recursion, reference, sampled_slab
+from beamprop.response import cell, interior, layer, periods, recursion, reference, sampled_slab
 
 SEEDS = range(12)
 #: Frequencies of several at once [Hz].
@@ -130,7 +130,7 @@ def test_bloch_phases(size):
     rng = np.random.default_rng(6)
     h = size * np.sqrt(rng.random((2, 300))) * np.exp(2j * np.pi * rng.random((2, 300)))
     zero = np.zeros_like(h)
-    b = cell.bloch_phase(cell.Matrix(1.0, 2 * h, zero, zero, zero, None))
+    b = periods.bloch_phase(cell.Matrix(1.0, 2 * h, zero, zero, zero, None))
     wanted = 2 * np.arcsin(np.sqrt(-h.astype(np.clongdouble) / 2))
     wanted = np.where(wanted.imag < 0, -wanted, wanted).astype(complex)
     np.testing.assert_allclose(b.reduced, wanted, rtol=5e-15)
@@ -149,12 +149,12 @@ def test_powers_of_a_cell(seed, count):
     kx = random_kx(rng, 70)
     far = layer.State(np.ones_like(kx), 20j + kx, np.zeros(kx.shape))
     m = cell.cell_matrix(layers, omega, kx)
-    found = cell.power_back(m, cell.bloch_phase(m), far, count)
+    found = periods.power_back(m, periods.bloch_phase(m), far, count)
     power = np.linalg.matrix_power(reference.cell_matrix(layers, omega, kx), count)
     p, q = reference.carried_through(power, far.p, far.q)
     scale = np.exp(found.log.astype(np.clongdouble))
     turns = (
-        1e-13 * count * (1 + np.max(np.abs(cell.bloch_phase(m).phase)))
+        1e-13 * count * (1 + np.max(np.abs(periods.bloch_phase(m).phase)))
     )  # the phase's own rounding, times the periods
     largest = np.abs(p) + np.abs(q) / 50
     assert np.max(np.abs(found.p * scale - p) / largest) < turns
@@ -168,11 +168,11 @@ def test_numbers_of_periods_in_two_terms_against_the_closed_form(seed, lossless)
     layers, omega = values_of(bp.lmmd_cell(0.05, 0.0) if lossless else bp.lmmd_cell())
     kx = random_kx(rng, 60)
     m = cell.cell_matrix(layers, omega, kx)
-    b = cell.bloch_phase(m)
+    b = periods.bloch_phase(m)
     far = layer.State(1 + rng.random((1, 60)) + 0j, 30j * rng.random((1, 60)), np.zeros((1, 60)))
     counts = np.unique(rng.integers(100, 100 + 10 ** rng.integers(1, 5), 400))
     states, factors = interior._in_two_terms(m, b, far, counts, np.zeros(60), np.ones(60))
-    plain = cell.power_back(m, b, far, counts[:, None])
+    plain = periods.power_back(m, b, far, counts[:, None])
     scale = np.exp(plain.log)
     close((factors * states.p).sum(axis=1), plain.p * scale, rtol=3e-13, axis=0)
     close((factors * states.q).sum(axis=1), plain.q * scale, rtol=3e-13, axis=0)

@@ -11,28 +11,14 @@ States are carried BACK from the outgoing wave at the far face, the direction in
 nothing cancels, however thick the slab, unless the physical wave decays on the way back (behind negative layers: reflection.py).
 What grows is taken out and kept as a logarithm.
 
-layer.py: one layer. cell.py: a cell and its powers. recursion.py: the way back through a slab. interior.py: the field there.
+layer.py: one layer. cell.py: a cell. periods.py: many of them in closed form. recursion.py: the way back through a slab. interior.py: the field there.
 slab.py: what is asked of a slab. reflection.py: r and t from the waves of each medium, for where the way back cancels.
 conditioning.py: r and t with estimated errors. walls.py: layers of density 0. bloch.py: infinite stacks. sampled_slab.py: a slab at given frequencies.
 transfer_function.py: H(kx, z), a plane wave in front of, inside and behind it. reference.py: the plain formulas, for tests.
 """
 
 from .bloch import bloch_error, bloch_wavenumber
-from .cell import bloch_phase, cell_matrix
-from .conditioning import SHIFT, Checked, solve_checked
-from .layer import perturbed
-from .slab import Response, dispersion, solve
+from .conditioning import Checked, solve_checked
+from .slab import Response, solve
 
-__all__ = [
-    "SHIFT",
-    "Checked",
-    "Response",
-    "bloch_error",
-    "bloch_phase",
-    "bloch_wavenumber",
-    "cell_matrix",
-    "dispersion",
-    "perturbed",
-    "solve",
-    "solve_checked",
-]
+__all__ = ["Checked", "Response", "bloch_error", "bloch_wavenumber", "solve", "solve_checked"]

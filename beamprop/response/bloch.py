@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..media.values import LayerValues, SegmentValues
-from .cell import bloch_phase, cell_matrix
+from .cell import cell_matrix
 from .conditioning import ROUNDING, SHIFT
 from .layer import perturbed
+from .periods import bloch_phase
 
 
 def bloch_wavenumber(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> np.ndarray:

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..arrays.matmul import BLOCK
 from ..media.values import LayerValues, SegmentValues
-from .cell import TINY, BlochPhase, Matrix, faded, matrix_back, power_back, times
+from .cell import Matrix, matrix_back, times
 from .layer import State, at_frequencies, entire, layer_back, one_layer, several_layers
+from .periods import TINY, BlochPhase, faded, power_back
 from .recursion import Places, Station, places_of, segment_of
 
 

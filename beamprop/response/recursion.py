@@ -8,8 +8,9 @@ import numpy as np
 
 from ..arrays.matmul import BLOCK
 from ..media.values import LayerValues, SegmentValues
-from .cell import BlochPhase, Matrix, bloch_phase, cell_matrix, power_back
+from .cell import Matrix, cell_matrix
 from .layer import Entire, State, layer_back, normalised, several_layers
+from .periods import BlochPhase, bloch_phase, power_back
 
 
 class Station(NamedTuple):

@@ -29,8 +29,9 @@ import numpy as np
 from ..conventions import outgoing_kz
 from ..media.fluids import FluidValues
 from ..media.values import Materials, SegmentValues
-from .cell import BlochPhase, Matrix, bloch_phase, cell_matrix
+from .cell import Matrix, cell_matrix
 from .layer import perturbed
+from .periods import BlochPhase, bloch_phase
 
 #: Periods times layers up to which a segment is taken layer by layer; beyond, by its Bloch waves.
 EXPANDED = 2048

@@ -15,9 +15,10 @@ from ..media.fluids import FluidValues
 from ..media.structures import Slab
 from ..media.values import SegmentValues, slab_values
 from . import walls
-from .cell import bloch_phase, cell_matrix
+from .cell import cell_matrix
 from .conditioning import SHIFT
 from .layer import at_frequencies, perturbed
+from .periods import bloch_phase
 from .slab import Response, dispersion, solve
 
 
