@@ -43,7 +43,7 @@ FEW_PLANES = 4
 def fill(
     s: SampledSlab, sources: AngleInterpolation, quadrature: Quadrature, h: np.ndarray, x: np.ndarray, out: np.ndarray
 ) -> None:
-    """p(z, x) of all asked beams into out (A, Z, X), of which (Z, X) must be contiguous."""
+    """p(z, x) of all requested beams into out (A, Z, X), of which (Z, X) must be contiguous."""
     contour, n = quadrature.contour, quadrature.fft
     right, left = quadrature.amplitudes_of(s.k0, sources)
     x = x - sources.beam.centre
@@ -100,7 +100,7 @@ def fill_map(
     out: np.ndarray,
     rtol: float,
 ) -> np.ndarray:
-    """p of all asked beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
+    """p of all requested beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
 
     Returns what the error of each beam, over the largest |p| of a plane, gains by planes that are made of others: (A,).
     """
