@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays.exponentials import complex_expm1
 from ..arrays.matmul import BLOCK
 from ..media.values import LayerValues, SegmentValues
 from .cell import Matrix, matrix_back, times
@@ -160,15 +161,15 @@ def _in_two_terms(
     x/(Lambda^2 - 1): factor 1 multiplies `far`, factor x (n at the band edge) multiplies far/(1 + Lambda) + Lambda/(Lambda^2 - 1)
     (M^-1 - I) far; both times exp(log - i phase n) scale.
     """
-    reduced, phase = b.reduced[0], b.phase[0]
-    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
+    reduced, phase, lam = b.reduced[0], b.phase[0], b.eigenvalue[0]
+    x2 = b.less_one[0] * (1 + lam)
     edge = np.abs(x2) < TINY
     moved = _moved(m, b, far)
     by_far, by_moved = np.where(edge, 0.0, 1 / (1 + lam)), lam / np.where(edge, 1.0, x2)
     p, q = (np.concatenate([v, by_far * v + by_moved * dv]) for v, dv in zip(far[:2], moved[:2], strict=True))
     factors = np.empty((behind.size, 2, reduced.size), complex)
     factors[:, 0] = np.exp(_faint(far.log[0] - near_log + np.multiply.outer(behind, -1j * phase))) * scale
-    x = np.expm1(faded(np.multiply.outer(behind, 2j * reduced)))
+    x = complex_expm1(faded(np.multiply.outer(behind, 2j * reduced)))
     if np.any(edge):
         x = np.where(edge, behind[:, None], x)
     np.multiply(x, factors[:, 0], out=factors[:, 1])
