@@ -1,5 +1,6 @@
 """The fast kernels against the plain formulas of `response.reference`, over random layers, cells and slabs."""
 
+import mpmath
 import numpy as np
 import pytest
 from closeness import RTOL, close
@@ -138,6 +139,29 @@ def test_bloch_phases(size):
     from_trace = reference.bloch_phase(2 + 2 * h.astype(np.clongdouble)).astype(complex)
     signs = np.minimum(np.abs(b.reduced - from_trace), np.abs(b.reduced + from_trace))
     assert np.max(signs * np.abs(b.reduced)) < 1e-18 + 1e-15 * size
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-5, 0.5, 3, 1e4, 1e12])
+@pytest.mark.parametrize("imaginary", [0, 1e-14, 1e-7, 1])
+def test_both_parts_of_a_bloch_phase_and_its_eigenvalue_are_precise(size, imaginary):
+    """Against 40 digits: growth over many periods is as exact as the phase, and exactly 0 in a lossless pass band."""
+    rng = np.random.default_rng(8)
+    h = size * (rng.uniform(-1, 1, 40) + 1j * imaginary * rng.uniform(-1, 1, 40))
+    zero = np.zeros_like(h)
+    b = periods.bloch_phase(cell.Matrix(1.0, 2 * h, zero, zero, zero, None))
+    with mpmath.workdps(40):
+        for i, value in enumerate(h):
+            cosine = (1 + mpmath.mpc(value)) * (-1 if b.flip[i] else 1)
+            phase = mpmath.acos(cosine)
+            phase = -phase if phase.imag < 0 else phase
+            want = complex(phase)
+            assert abs(b.reduced[i] - want) < 1e-15 * abs(want) or abs(b.reduced[i] + want.conjugate()) < 1e-15 * abs(want)
+            assert b.reduced[i].imag == pytest.approx(want.imag, rel=2e-15, abs=1e-300)
+            eigenvalue = mpmath.exp(1j * mpmath.mpc(b.reduced[i]))
+            assert abs(b.eigenvalue[i] - complex(eigenvalue)) < 2e-15 * (1 + abs(want)) * abs(eigenvalue)
+            assert abs(b.less_one[i] - complex(eigenvalue - 1)) < 2e-15 * min(1, abs(want))
+    if not imaginary:
+        assert np.all(b.reduced.imag[(h.real > -2) & (h.real < 0)] == 0)
 
 
 @pytest.mark.parametrize("count", [1, 7, 450])

@@ -20,11 +20,14 @@ BLOCK = 2**20
 
 def complex_expm1(z: np.ndarray) -> np.ndarray:
     """exp(z) - 1 by the real functions, which NumPy has in vector form: 1.5 times as fast as its own for complex numbers."""
-    sine, cosine, less_one = np.sin(z.imag / 2), np.cos(z.imag / 2), np.expm1(z.real)
-    out = np.empty(z.shape, complex)
-    twice = 2 * (less_one + 1)
-    np.multiply(twice * sine, cosine, out=out.imag)
-    twice *= sine
+    return expm1_of_parts(np.expm1(z.real), np.sin(z.imag / 2), np.cos(z.imag / 2))
+
+
+def expm1_of_parts(less_one: np.ndarray, sine: np.ndarray, cosine: np.ndarray) -> np.ndarray:
+    """exp(a + 2ib) - 1 from exp(a) - 1, sin b and cos b."""
+    out = np.empty(sine.shape, complex)
+    twice = 2 * (less_one + 1) * sine
+    np.multiply(twice, cosine, out=out.imag)
     np.subtract(less_one, twice * sine, out=out.real)
     return out
 

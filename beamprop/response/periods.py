@@ -11,27 +11,25 @@ from .cell import Matrix
 from .layer import State
 
 TINY = 1e-300
+#: Exponents are raised to at least this: exp(-100) is negligible beside 1, and denormal numbers take 100 times as long.
+FADED = -100.0
 
 
 class BlochPhase(NamedTuple):
     """Eigenvalues exp(+-i phase) of a cell matrix, Im(phase) >= 0.
 
     `reduced` is the phase less pi where `flip`: the eigenvalue nearest to +1 of +-M, the one that full precision is for.
-    `less_one` is that eigenvalue less 1, exp(i reduced) - 1.
+    `eigenvalue` is exp(i reduced) and `less_one` exp(i reduced) - 1, both to full precision of their own size.
     """
 
     reduced: np.ndarray
     flip: np.ndarray
+    eigenvalue: np.ndarray
     less_one: np.ndarray
 
     @property
     def phase(self) -> np.ndarray:
         return self.reduced + np.pi * self.flip if np.any(self.flip) else self.reduced
-
-    @property
-    def eigenvalue(self) -> np.ndarray:
-        """exp(i reduced), to full precision of its own size where a matrix is not scaled."""
-        return 1 + self.less_one
 
 
 def bloch_phase(m: Matrix) -> BlochPhase:
@@ -53,7 +51,8 @@ def bloch_phase(m: Matrix) -> BlochPhase:
     larger = np.where(np.abs(x + root) >= np.abs(x - root), x + root, x - root)
     logarithm = m.growth + np.log(np.where(thick & (larger != 0), larger, 1.0))
     reduced = np.where(thick, 1j * logarithm, calm.reduced)
-    return BlochPhase(reduced, calm.flip, np.where(thick, np.expm1(-logarithm), calm.less_one))
+    eigenvalue = np.where(thick, np.exp(-logarithm), calm.eigenvalue)
+    return BlochPhase(reduced, calm.flip, eigenvalue, np.where(thick, np.expm1(-logarithm), calm.less_one))
 
 
 def _calm_phase(h: np.ndarray) -> BlochPhase:
@@ -75,13 +74,8 @@ def _calm_phase(h: np.ndarray) -> BlochPhase:
     sine *= -1j * sign
     larger = sine  # 1/eigenvalue - 1: the larger of both is the one that does not cancel
     larger += h
-    return BlochPhase(reduced, flip, -larger / (1 + larger))
-
-
-def faded(exponent: np.ndarray) -> np.ndarray:
-    """Exponents raised to at least -100, in place: exp(-100) is negligible beside 1, and denormal numbers take 100 times as long."""
-    np.maximum(exponent.real, -100.0, out=exponent.real)
-    return exponent
+    eigenvalue = 1 / (1 + larger)
+    return BlochPhase(reduced, flip, eigenvalue, -larger * eigenvalue)
 
 
 def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) -> State:
@@ -91,7 +85,9 @@ def power_back(m: Matrix, b: BlochPhase, far: State, count: np.ndarray | int) ->
     ``g = (Lambda + Lambda^2n)/(1 + Lambda)``, ``f = Lambda (1 - Lambda^2n)/(1 - Lambda^2)`` (n at the band edge): the
     Chebyshev form of `reference.powers_back` with its growth taken out and its cancellations done by hand.
     """
-    x2n = complex_expm1(faded(b.reduced * (2j * count)))
+    exponent = b.reduced * (2j * count)
+    np.maximum(exponent.real, FADED, out=exponent.real)
+    x2n = complex_expm1(exponent)
     share = x2n / (1 + b.eigenvalue)
     edge = np.abs(b.less_one) < TINY
     ratio = np.where(edge, count, share / np.where(edge, 1.0, b.less_one)) if np.any(edge) else share / b.less_one
