@@ -155,7 +155,9 @@ def test_both_parts_of_a_bloch_phase_and_its_eigenvalue_are_precise(size, imagin
             phase = mpmath.acos(cosine)
             phase = -phase if phase.imag < 0 else phase
             want = complex(phase)
-            assert abs(b.reduced[i] - want) < 1e-15 * abs(want) or abs(b.reduced[i] + want.conjugate()) < 1e-15 * abs(want)
+            assert abs(b.reduced[i] - want) < 1e-15 * abs(want) or abs(b.reduced[i] + want.conjugate()) < 1e-15 * abs(
+                want
+            )
             assert b.reduced[i].imag == pytest.approx(want.imag, rel=2e-15, abs=1e-300)
             eigenvalue = mpmath.exp(1j * mpmath.mpc(b.reduced[i]))
             assert abs(b.eigenvalue[i] - complex(eigenvalue)) < 2e-15 * (1 + abs(want)) * abs(eigenvalue)
