@@ -6,6 +6,7 @@ import warnings
 import mpmath as mp
 import numpy as np
 import pytest
+from panels import panels
 from scipy.optimize import brentq
 from sided import BULK, LAM, RHO, F
 
@@ -44,14 +45,12 @@ def transmitted_share(layers, frequency, fwhm, angle):
     graded = k0 * np.concatenate([[0.0], np.geomspace(1e-13, 1.0, 100)])
     edges = np.unique(np.concatenate([[0.0, k0], graded, *(k + sign * graded for k in found for sign in (1, -1))]))
     edges = edges[(edges >= 0) & (edges <= k0)]
-    g, v = np.polynomial.legendre.leggauss(16)
-    width = np.diff(edges)[:, None] / 2
-    k, weight = (edges[:-1, None] + width * (1 + g)).ravel(), (width * v).ravel()
+    k, weight = panels(edges, 16)
     off = k0 * np.sin(np.radians(angle))
     launched = sum(np.exp(-((a * (k - side * off)) ** 2) / 2) for side in (1, -1)) * np.sqrt(k0**2 - k**2) * weight
     share = launched / launched.sum()
     strong = share > 1e-25
-    passes = np.array([1 / (1 + mismatch(layers, one, frequency) ** 2) for one in k[strong]])
+    passes = np.array([1 / (1 + mismatch(layers, kx, frequency) ** 2) for kx in k[strong]])
     return share[strong] @ passes, len(found)
 
 
