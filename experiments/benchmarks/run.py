@@ -62,7 +62,7 @@ def plane_waves(options: argparse.Namespace) -> list[Row]:
     except subprocess.CalledProcessError:
         print("navette 0.8.0 is not installed here (it needs Python 3.12): rows skipped", file=sys.stderr)
         return rows
-    assert all(abs(found - float(ds.transmissivity[0])) < 1e-9 for _, found in (alone, both))
+    assert all(abs(share - float(ds.transmissivity[0])) < 1e-9 for _, share in (alone, both))
     # as navette in its process: again and again
     (ours,) = measure(
         lambda: bp.scattering(SLAB, FREQUENCY, kx_over_k0=sine, estimate=False), repeats=20 * options.repeats
