@@ -49,13 +49,13 @@ def test_the_worst_of_mixed_angles_is_seen_wherever_it_is_asked_for():
     lam = 343 / F
     slab = bp.Slab.uniform(bp.AIR, 0.05, after=bp.Fluid.from_speed(1000.0, 34_300.0))
     beam, x, z = bp.Slits(0.05 * lam, 0.6 * lam, 2), np.linspace(-0.5, 0.5, 21), 0.05 + 5 * lam
-    asked = np.degrees(np.arcsin(np.linspace(0, 1 / 1.2, 55)))
-    summed = angles.interpolate_angles(beam, asked, 2 * np.pi / lam, 1e-7).angles
-    asked = np.insert(asked, [0, 14, 28, 41, 55], summed[[0, 2, 4, 5, -1]])
-    found = bp.field(slab, beam, F, x, z, angle=asked, rtol=1e-3).isel(angle=-2)
-    right = bp.field(slab, beam.at_angle(asked[-2]), F, x, z, rtol=1e-9)
-    error = float(np.abs(found.p - right.p).max() / np.abs(right.p).max())
-    assert 1e-7 < error < found.error_estimate  # mixed to 1e-7 of what is sent
+    requested = np.degrees(np.arcsin(np.linspace(0, 1 / 1.2, 55)))
+    summed = angles.interpolate_angles(beam, requested, 2 * np.pi / lam, 1e-7).angles
+    requested = np.insert(requested, [0, 14, 28, 41, 55], summed[[0, 2, 4, 5, -1]])
+    mixed = bp.field(slab, beam, F, x, z, angle=requested, rtol=1e-3).isel(angle=-2)
+    right = bp.field(slab, beam.at_angle(requested[-2]), F, x, z, rtol=1e-9)
+    error = float(np.abs(mixed.p - right.p).max() / np.abs(right.p).max())
+    assert 1e-7 < error < mixed.error_estimate  # mixed to 1e-7 of what is sent
 
 
 # --- limits of small loss ---------------------------------------------------------------------------------
@@ -93,8 +93,8 @@ def test_backward_modes_without_number_are_answered_by_the_bands():
     """Case 33, 100 000 lossless periods that guide backward waves without number: the limit of small losses."""
     case = accuracy.make_case(33)
     ask = (case.beam, case.frequency, case.x, case.z)
-    found = bp.field(case.slab, *ask, rtol=case.rtol)
-    assert float(found.error_estimate) <= case.rtol
+    lossless = bp.field(case.slab, *ask, rtol=case.rtol)
+    assert float(lossless.error_estimate) <= case.rtol
     cell, periods = case.slab.segments[0]
     apart = []
     for loss in (1e-7, 1e-8):
@@ -106,7 +106,7 @@ def test_backward_modes_without_number_are_answered_by_the_bands():
             for v in cell.layers
         ]
         p = bp.field(bp.Slab(layers, periods), *ask, rtol=1e-9).p.values
-        apart.append(np.abs(p - found.p.values).max() / np.abs(p).max())
+        apart.append(np.abs(p - lossless.p.values).max() / np.abs(p).max())
     assert apart[0] < 1e-5
     np.testing.assert_allclose(apart[0] / apart[1], 10, rtol=0.02)
 
@@ -134,10 +134,10 @@ def test_errors_are_over_the_largest_pressure_of_the_plane_wherever_it_lies(medi
     s = sampled_slab.sample(slab, F)
     reach = paths.Extent(s.k0, s.k0, 2 * s.k0, 0.1, 2.0, 20.0)
     planes = np.array([-20.0, slab.thickness])
-    found = survey.survey(
+    outside = survey.survey(
         s, angles.single(beam), transfer_function.through(s, beam.z0), x, planes, reach, 1e-8
     ).peaks_outside[0, 1]
-    assert 0.3 * peak < found < 1.1 * peak
+    assert 0.3 * peak < outside < 1.1 * peak
 
 
 def test_a_beam_that_lands_in_the_window_is_not_looked_for():
@@ -204,11 +204,11 @@ def test_lower_accuracy_is_cheaper(loss, points):
     x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
     sizes = []
     for rtol in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
-        found = contour_choice.choose_contour(
+        quadrature = contour_choice.choose_contour(
             s, angles.single(bp.GaussianBeam(0.096, 30.0)), transfer_function.through(s, 0.0), x, z, rtol
         )
-        assert found.error[0] <= rtol
-        sizes.append(found.contour.k.size)
+        assert quadrature.error[0] <= rtol
+        sizes.append(quadrature.contour.k.size)
     assert sizes == sorted(sizes)
     assert sizes[0] < 0.6 * sizes[-1]
 

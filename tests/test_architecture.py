@@ -61,28 +61,28 @@ MODULES = sorted(set(FILES.values()) - {"__init__"})
 def own_imports(path):
     """Names of the package's modules that a file imports, anywhere in it."""
     depth = len(path.relative_to(ROOT).parts) - 1
-    found = set()
+    modules = set()
     for node in ast.walk(tree(path)):
         if isinstance(node, ast.ImportFrom) and node.level > depth:
-            found |= {node.module.split(".")[0]} if node.module else {alias.name for alias in node.names}
+            modules |= {node.module.split(".")[0]} if node.module else {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("beamprop"):
-            found |= {*node.module.split(".")[1:2]} or {alias.name for alias in node.names}
+            modules |= {*node.module.split(".")[1:2]} or {alias.name for alias in node.names}
         elif isinstance(node, ast.Import):
-            found |= {
+            modules |= {
                 name for alias in node.names if alias.name.startswith("beamprop") for name in alias.name.split(".")[1:2]
             }
-    return found - {FILES[path]}
+    return modules - {FILES[path]}
 
 
-def other_imports(path):
+def foreign_imports(path):
     """Full names of all that a file imports from other packages."""
-    found = set()
+    imports = set()
     for node in ast.walk(tree(path)):
         if isinstance(node, ast.ImportFrom) and not node.level:
-            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+            imports |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
         elif isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-    return found
+            imports |= {alias.name for alias in node.names}
+    return imports
 
 
 def files_of(module):
@@ -113,7 +113,7 @@ def test_the_checker_sees_imports():
     """It finds relative and function-level imports in files and folders (or the tests here would hold by themselves)."""
     assert {"io", "fields", "response", "sources", "media"} <= set().union(*map(own_imports, files_of("api")))
     assert {"parameters", "io", "api", "plot"} <= set().union(*map(own_imports, files_of("cli")))
-    assert "pyfftw" in set().union(*map(other_imports, files_of("arrays")))
+    assert "pyfftw" in set().union(*map(foreign_imports, files_of("arrays")))
     assert len(FILES) >= 18
 
 
@@ -121,7 +121,7 @@ def test_the_checker_sees_imports():
 def test_one_user_of_fft_libraries(module):
     """arrays/fft.py alone imports pyfftw or scipy.fft."""
     for path in files_of(module):
-        fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
+        fft = {name for name in foreign_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
         assert not fft or path.name == "fft.py"
 
 
@@ -173,7 +173,7 @@ def test_one_home_of_checks():
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""
     for path in files_of(module):
-        assert not {name.split(".")[0] for name in other_imports(path)} & {
+        assert not {name.split(".")[0] for name in foreign_imports(path)} & {
             "xarray",
             "matplotlib",
             "click",

@@ -103,16 +103,16 @@ def test_crossings_alone_and_together():
     route = routes.Route(
         s,
         lambda slab, _: routes.far_face(slab, 0.0),
-        lambda one: transfer_function.through(one, 0.0),
+        lambda single: transfer_function.through(single, 0.0),
         face,
         face,
         True,
     )
     together = sections.measure(route, beam, 1e-6)
     for i in range(3):
-        one = s.take(i)
+        single = s.take(i)
         alone = one_frequency.measured_alone(
-            one, beam, transfer_function.through(one, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
+            single, beam, transfer_function.through(single, 0.0), (slab.thickness, slab.thickness), 1e-6, 0.5, True
         )
         assert alone[3] == together.crossings[i] == 4
         assert alone[0] == pytest.approx(together.width[i], rel=1e-5)

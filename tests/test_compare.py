@@ -74,8 +74,8 @@ def test_the_scale_is_the_best_one():
     b = make(values=(a.p.values + 0.1 * random.normal(size=a.p.shape)) * (0.7 + 0.2j))
     best = float(compare(a, b).relative_l2_scaled)
     scale = complex(compare(a, b).scale)
-    for other in (scale * 1.01, scale * 0.99, scale * np.exp(0.01j), scale * np.exp(-0.01j)):
-        assert float(compare(a, make(values=b.p.values * other)).relative_l2) > best
+    for factor in (scale * 1.01, scale * 0.99, scale * np.exp(0.01j), scale * np.exp(-0.01j)):
+        assert float(compare(a, make(values=b.p.values * factor)).relative_l2) > best
     np.testing.assert_allclose(compare(a, b, rescale=True).relative_l2, best, rtol=1e-12)
 
 
@@ -198,9 +198,9 @@ def test_sweeps_are_compared_one_by_one():
     assert c.fwhm_difference.dims == ("frequency", "angle", "z")
     np.testing.assert_allclose(c.relative_l2, [[0, 0.5], [0, 0.5]], rtol=1e-12)
     np.testing.assert_allclose(c.scale, [[1, 1 / 1.5], [1, 1 / 1.5]], rtol=1e-12)
-    one = compare(a.isel(frequency=1, angle=1), b.isel(frequency=[1], angle=1))
+    single = compare(a.isel(frequency=1, angle=1), b.isel(frequency=[1], angle=1))
     for name in ("largest_error", "largest_error_x", "largest_error_z", "relative_l2_scaled"):
-        np.testing.assert_allclose(c[name][1, 1], one[name], rtol=1e-12, atol=1e-14)
+        np.testing.assert_allclose(c[name][1, 1], single[name], rtol=1e-12, atol=1e-14)
 
 
 @pytest.mark.parametrize(

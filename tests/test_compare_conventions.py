@@ -83,16 +83,16 @@ def test_wraparound_is_estimated_apart():
     neighbour = 0.01 * gaussian(X[None, :] - 0.3, Z[:, None])
     open_space = make(boundary="open")
     periodic = make(values=open_space.p.values + neighbour, boundary="periodic", period=2.0)
-    other = make(values=periodic.p.values * 1.001, boundary="periodic", period=2.0)
-    c = compare(periodic, other, open_reference=open_space)
+    scaled = make(values=periodic.p.values * 1.001, boundary="periodic", period=2.0)
+    c = compare(periodic, scaled, open_reference=open_space)
     assert float(c.relative_l2) == pytest.approx(1e-3, rel=1e-6)
     want = np.linalg.norm(neighbour) / np.linalg.norm(periodic.p)
     assert float(c.wraparound) == pytest.approx(want, rel=1e-6)
-    assert "wraparound" not in compare(periodic, other)
+    assert "wraparound" not in compare(periodic, scaled)
     with pytest.warns(UserWarning, match=r"estimated at 0\.0\d+ \(wraparound\)"):
-        c = compare(open_space, other, open_reference=open_space)
+        c = compare(open_space, scaled, open_reference=open_space)
     assert float(c.wraparound) == pytest.approx(want, rel=0.2)
     with pytest.raises(ValueError, match="open_reference: expected a field in open space"):
-        compare(periodic, other, open_reference=periodic)
+        compare(periodic, scaled, open_reference=periodic)
     with pytest.raises(ValueError, match="open_reference: expected a or b to be periodic"):
         compare(open_space, open_space, open_reference=open_space)

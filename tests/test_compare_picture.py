@@ -33,10 +33,10 @@ def test_picture_with_maps(figure):
 def test_picture_without_fields_and_in_given_axes(figure):
     c = compare(make(), make(values=make().p.values * 1.01)).drop_vars(["p_a", "p_b", "error"])
     assert len(comparison(c)) == 2
-    one = figure.subplots()[1]
-    assert comparison(c, one) is one
-    two = figure.subplots(1, 2)[1]
-    assert comparison(c, two)[1] is two[1]
+    lower = figure.subplots()[1]
+    assert comparison(c, lower) is lower
+    pair = figure.subplots(1, 2)[1]
+    assert comparison(c, pair)[1] is pair[1]
     with pytest.raises(ValueError, match="axes: expected 1, 2 or"):
         comparison(c, figure.subplots(1, 5)[1])
 

@@ -64,8 +64,8 @@ def test_the_first_coordinate_is_x_and_the_arguments_choose(tmp_path, names):
     assert (ds.x.attrs["file_coordinate"], ds.z.attrs["file_coordinate"]) == names
     turned = read_comsol(path, x=names[1], z=names[0])
     np.testing.assert_array_equal(turned.p.values, expected().T)
-    for given_one in (read_comsol(path, x=names[1]), read_comsol(path, z=names[0])):
-        xr.testing.assert_equal(given_one, turned)
+    for half_given in (read_comsol(path, x=names[1]), read_comsol(path, z=names[0])):
+        xr.testing.assert_equal(half_given, turned)
 
 
 def test_three_coordinates_with_one_constant(tmp_path):

@@ -26,10 +26,10 @@ def assert_close(a, b, rtol=4 * RTOL):
 def test_superposition():
     """The field of a sum of profiles is the sum of their fields."""
     x = np.linspace(-0.4, 0.4, 161)
-    one, two = np.exp(-((x / 0.06) ** 2)), 1j * np.exp(-(((x - 0.1) / 0.05) ** 2) + 20j * x)
+    left, right = np.exp(-((x / 0.06) ** 2)), 1j * np.exp(-(((x - 0.1) / 0.05) ** 2) + 20j * x)
     out = np.linspace(-0.5, 0.5, 40)
-    parts = [pressure(bp.Profile(x, p, z0=-0.1), out) for p in (one, two)]
-    whole = pressure(bp.Profile(x, 2 * one - (1 + 1j) * two, z0=-0.1), out)
+    parts = [pressure(bp.Profile(x, p, z0=-0.1), out) for p in (left, right)]
+    whole = pressure(bp.Profile(x, 2 * left - (1 + 1j) * right, z0=-0.1), out)
     assert_close(whole, 2 * parts[0] - (1 + 1j) * parts[1])
 
 
@@ -166,9 +166,9 @@ def test_the_fast_sum_is_the_matrix_product():
 def test_the_fast_sum_folds_a_band_wider_than_its_grid():
     """Fewer points than plane waves: what falls beyond the grid's band is folded back exactly."""
     line, h, right, left, x, n = line_and_sums()
-    coarse, few = x[::20], n // 20
-    assert line.k.size > few
-    fast = sums.fft_sum(line, h, right, left, coarse, few)
+    coarse, length = x[::20], n // 20
+    assert line.k.size > length
+    fast = sums.fft_sum(line, h, right, left, coarse, length)
     slow = sums.direct_sum(line, h, right, left, coarse)
     np.testing.assert_allclose(fast, slow, rtol=0, atol=1e-12 * np.abs(slow).max())
 

@@ -136,8 +136,8 @@ def test_reciprocity(first, second, periods, ratio, before, after):
     slab = bp.Slab(first, periods, before=before) + bp.Slab(second, 2, after=after)
     kx = ratio * K0
     forward, backward = amplitudes(slab, kx)[1][0], amplitudes(reversed_slab(slab), kx)[1][0]
-    one, two = forward * admittance(after, kx), backward * admittance(before, kx)
-    assert abs(one - two) <= 1e-9 * abs(one) + 1e-280
+    there, back = forward * admittance(after, kx), backward * admittance(before, kx)
+    assert abs(there - back) <= 1e-9 * abs(there) + 1e-280
 
 
 @pytest.mark.parametrize("kx", [0.3 * K0, 1.7 * K0, 0.8 * K0 - 3j])
@@ -187,13 +187,13 @@ def test_copies_of_a_cell_are_periods(layers, count, ratio, after):
 
 @fixed
 @given(random_layers(loss=lossy, most=3), random_layers(loss=lossy, most=3), random_layers(loss=lossy, most=3), ratios)
-def test_stacking_is_associative(one, two, three, ratio):
+def test_stacking_is_associative(first, second, third, ratio):
     """(a + b) + c is a + (b + c), and the slab of one cell with all the layers; outer half-spaces are kept."""
-    a, b, c = bp.Slab(one, before=HELIUM), bp.Slab(two, 2, HEAVY, HEAVY), bp.Slab(three, after=HEAVY)
+    a, b, c = bp.Slab(first, before=HELIUM), bp.Slab(second, 2, HEAVY, HEAVY), bp.Slab(third, after=HEAVY)
     left, right = (a + b) + c, a + (b + c)
     assert left == right
     assert (left.before, left.after) == (HELIUM, HEAVY)
-    every = bp.Slab(one + two + two + three, before=HELIUM, after=HEAVY)
+    every = bp.Slab(first + second + second + third, before=HELIUM, after=HEAVY)
     z = np.linspace(0.01, 0.99, 9) * every.thickness
     assert_same(amplitudes(left, ratio * K0, z), amplitudes(every, ratio * K0, z), 1e-11)
 
@@ -202,9 +202,9 @@ def test_stacking_is_associative(one, two, three, ratio):
 @pytest.mark.parametrize("ratio", [0.0, 0.7, 2.5])
 def test_a_uniform_slab_is_any_number_of_thin_cells(fluid, ratio):
     """100000 periods of thin cells are one layer."""
-    one, many = bp.Slab.uniform(fluid, 0.2), bp.Slab([bp.Layer(fluid, 0.2 / 100_000)], 100_000)
+    whole, thin_cells = bp.Slab.uniform(fluid, 0.2), bp.Slab([bp.Layer(fluid, 0.2 / 100_000)], 100_000)
     z = np.array([0.0, 0.0123456, 0.1, 0.19999])
-    assert_same(amplitudes(many, ratio * K0, z), amplitudes(one, ratio * K0, z), 1e-9)
+    assert_same(amplitudes(thin_cells, ratio * K0, z), amplitudes(whole, ratio * K0, z), 1e-9)
 
 
 @pytest.mark.parametrize("fluid", [*FLUIDS, DAMP], ids=["air", "helium", "heavy", "crystal", "water", "lossy"])

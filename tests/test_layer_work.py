@@ -34,11 +34,11 @@ def test_the_work_does_not_grow_with_the_periods(monkeypatch, depths):
         slab = bp.Slab(bp.lmmd_cell(0.05 + 0.05j, 0.025, 10, 1 / 60), periods)
         return lambda: inside(slab, kx, depths) if depths else bp.scattering(slab, F, kx=kx, estimate=estimate)
 
-    few, many = (layer_work(monkeypatch, ask(n)) for n in (2, 1_000_000))
-    assert few == many > 0
+    of_two, of_a_million = (layer_work(monkeypatch, ask(n)) for n in (2, 1_000_000))
+    assert of_two == of_a_million > 0
     if depths is None:
-        assert many == 10 * kx.size
-        assert layer_work(monkeypatch, ask(450, estimate=True)) == 2 * many
+        assert of_a_million == 10 * kx.size
+        assert layer_work(monkeypatch, ask(450, estimate=True)) == 2 * of_a_million
 
 
 def test_one_response_serves_every_angle(monkeypatch):
@@ -47,5 +47,5 @@ def test_one_response_serves_every_angle(monkeypatch):
     def ask(angle):
         return lambda: bp.field(PAPER, bp.GaussianBeam(0.096, z0=-0.1), F, np.linspace(-1, 1, 64), [0.5, 1.0], angle)
 
-    one, nine = layer_work(monkeypatch, ask(80.0)), layer_work(monkeypatch, ask(np.linspace(-80, 80, 9)))
-    assert nine < 2 * one
+    single, sweep = layer_work(monkeypatch, ask(80.0)), layer_work(monkeypatch, ask(np.linspace(-80, 80, 9)))
+    assert sweep < 2 * single

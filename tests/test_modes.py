@@ -95,9 +95,9 @@ def test_a_cluster_of_backward_modes_gets_one_circle():
     assert apart[0] / apart[1] == pytest.approx(10, rel=0.05)
     assert apart[1] / apart[2] == pytest.approx(10, rel=0.05)
     s = sampled_slab.sample(bp.Slab.uniform(bp.Fluid(1.25 * -0.88, BULK / -4.5), 0.13), F)
-    found = misplaced.misplaced(s, 0.3 * K0, 10 * K0, 1e-3 * K0)
-    assert len(found.poles) == len(set(found.poles))
-    assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in found.poles)
+    search = misplaced.misplaced(s, 0.3 * K0, 10 * K0, 1e-3 * K0)
+    assert len(search.poles) == len(set(search.poles))
+    assert any(abs(k - K0 * np.sqrt((1 - 4.5 / 0.88) / (1 - 1 / 0.88**2))) < 1e-6 * K0 for k in search.poles)
 
 
 def test_frequencies_are_padded():
@@ -154,8 +154,8 @@ def test_field_far_from_a_slab_with_backward_modes():
     )
     slab, beam = bp.Slab(cell, 12), bp.GaussianBeam(0.11, x0=0.18, z0=-4.0)
     a, k0 = 0.11 / (2 * np.sqrt(np.log(2))), 2 * np.pi * frequency / 343
-    found = misplaced.misplaced(sampled_slab.sample(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
-    assert any(abs(k) < 0.9 * k0 for k in found.poles)
+    search = misplaced.misplaced(sampled_slab.sample(slab, frequency), 0.1 * k0, 3 * k0, 1e-3 * k0)
+    assert any(abs(k) < 0.9 * k0 for k in search.poles)
     x, z = np.linspace(0, 0.4, 7), np.array([-3.9, -1.0, 0.02, 0.08, 0.4])
     want = oracles.open_field(
         slab,
@@ -198,13 +198,13 @@ def test_modes_on_the_wrong_side_at_many_frequencies_at_once(loss):
 
     f, slab = np.linspace(1500, 4500, 9), thin(-0.6, 0.01, loss)
     depth, band = np.linspace(2, 12, 9), np.linspace(100, 400, 9)
-    found = misplaced.any_misplaced(sample_all(slab, f), depth, band)
+    at_once = misplaced.any_misplaced(sample_all(slab, f), depth, band)
     each = [
         bool(misplaced.misplaced(sampled_slab.sample(slab, a), b, c, 1e-3 * K0).poles)
         for a, b, c in zip(f, depth, band, strict=True)
     ]
-    assert np.all(found >= each)
-    assert loss == 0 or found.tolist() == each
+    assert np.all(at_once >= each)
+    assert loss == 0 or at_once.tolist() == each
     assert any(each)
 
 

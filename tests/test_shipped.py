@@ -26,12 +26,12 @@ def test_no_file_names_a_private_path():
     """Nothing that ships points into the folders of the machine it was written on."""
     files = shipped()
     assert len(files) > 20
-    found = [
+    private = [
         f"{path.relative_to(CHECKOUT)}: {match.group()}"
         for path in files
         if (match := PRIVATE.search(path.read_text(encoding="utf-8")))
     ]
-    assert found == []
+    assert private == []
 
 
 def test_the_tests_that_the_documentation_names_exist():
