@@ -6,7 +6,7 @@
 
 Every case is made from its number. An outcome is good if it is an answer without NaN or infinity (or with a warning, or where
 they are documented), or a ValueError that names an argument. Bad are: other errors, warnings of NumPy that leak, values that are not
-finite and not announced, more than SECONDS of the processor, more than MEMORY bytes, and the end of the process.
+finite and not warned of, more than SECONDS of the processor, more than MEMORY bytes, and the end of the process.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def outcome(name: str, ask: Callable[[], Any]) -> tuple[str, str]:
 
 
 def ask_all(kind: str, first: int, last: int) -> Iterator[dict[str, Any]]:
-    """Outcomes of some cases, within limits of time and memory; each is announced before it is asked."""
+    """Outcomes of some cases, within limits of time and memory; each prints its number before it begins."""
     import matplotlib
 
     matplotlib.use("agg")

@@ -42,9 +42,9 @@ def test_four_cases_of_each_kind(kind):
 
 
 def test_the_worst_of_mixed_angles_is_seen_wherever_it_is_asked_for():
-    """Slits that nearly cancel behind a fast fluid at the steepest angle, asked for among angles that begin and end with others.
+    """Slits that nearly cancel behind a fast fluid at the steepest angle, requested among angles that begin and end elsewhere.
 
-    Those, and three between, are among the few that all are mixed from: there mixing is exact.
+    Those, and three between, are nodes of the interpolation over angles, where it is exact.
     """
     lam = 343 / F
     slab = bp.Slab.uniform(bp.AIR, 0.05, after=bp.Fluid.from_speed(1000.0, 34_300.0))
@@ -52,10 +52,10 @@ def test_the_worst_of_mixed_angles_is_seen_wherever_it_is_asked_for():
     requested = np.degrees(np.arcsin(np.linspace(0, 1 / 1.2, 55)))
     summed = angles.interpolate_angles(beam, requested, 2 * np.pi / lam, 1e-7).angles
     requested = np.insert(requested, [0, 14, 28, 41, 55], summed[[0, 2, 4, 5, -1]])
-    mixed = bp.field(slab, beam, F, x, z, angle=requested, rtol=1e-3).isel(angle=-2)
+    interpolated = bp.field(slab, beam, F, x, z, angle=requested, rtol=1e-3).isel(angle=-2)
     right = bp.field(slab, beam.at_angle(requested[-2]), F, x, z, rtol=1e-9)
-    error = float(np.abs(mixed.p - right.p).max() / np.abs(right.p).max())
-    assert 1e-7 < error < mixed.error_estimate  # mixed to 1e-7 of what is sent
+    error = float(np.abs(interpolated.p - right.p).max() / np.abs(right.p).max())
+    assert 1e-7 < error < interpolated.error_estimate  # interpolated to 1e-7 of what is launched
 
 
 # --- limits of small loss ---------------------------------------------------------------------------------
@@ -178,7 +178,7 @@ def test_beams_from_far_away(width, angle, z0, half, rtol):
 
 @pytest.mark.parametrize("medium", ["twelve layers", "water"])
 def test_beams_from_far_away_through_a_slab(medium):
-    """Little is left of them on the path but near kx = 0, where a window for the positions alone would take too few plane waves."""
+    """Little is left of them on the contour but near kx = 0, where a window for the positions alone would take too few plane waves."""
     wavelength, water = 343 / F, bp.Fluid.from_speed(1000.0, 1480.0)
     slab, width, angle, z0 = {
         "twelve layers": (bp.Slab(bp.lmmd_cell(n_layers=12), 450), 0.2, 45.0, -300.0),
@@ -193,13 +193,13 @@ def test_beams_from_far_away_through_a_slab(medium):
     assert apart.max() < 1e-3  # of the window's largest |p|, a part of the plane's
 
 
-# --- work and what is asked -------------------------------------------------------------------------------
+# --- work and what is requested ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("points", [41, 1024])
 @pytest.mark.parametrize("loss", [(0.05, 0.0), (0.05 + 0.05j, 0.025)])
 def test_lower_accuracy_is_cheaper(loss, points):
-    """Plane waves of the line that is chosen: fewer the larger rtol is."""
+    """Plane waves of the contour that is chosen: fewer the larger rtol is."""
     s = sampled_slab.sample(bp.Slab(bp.lmmd_cell(*loss), 450), F)
     x, z = np.linspace(-1, 1, points), np.linspace(0, s.thickness, 9)
     sizes = []

@@ -66,7 +66,7 @@ def test_the_grid_of_x_does_not_matter():
 
 
 def test_the_set_of_z_does_not_matter():
-    """Planes asked for together, in any order, or one by one give the same field."""
+    """Planes requested together, in any order, or one by one give the same field."""
     beam, x = bp.GaussianBeam(0.08, 20.0, z0=-0.1), np.linspace(-0.3, 0.3, 21)
     together = pressure(beam, x)
     assert_close(pressure(beam, x, Z[::-1])[::-1], together)
@@ -146,7 +146,7 @@ def test_pressure_and_velocity_are_continuous_at_every_face(slab):
 
 
 def line_and_sums():
-    """An open line that fits an FFT of 720 points, a slab's response on it, and amplitudes on both sides of kx = 0."""
+    """A straight contour that fits an FFT of 720 points, a slab's response on it, and amplitudes on both sides of kx = 0."""
     reach = paths.Extent(K0, K0, 2.2 * K0, 0.8, 0.2, 0.3)
     n, dx = 720, 0.005
     line = paths.straight_contour(paths.plan_straight(reach, 1e-8)._replace(window=n * dx))

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are n
 
 @pytest.mark.parametrize("kind", fuzz.QUICK)
 def test_nothing_else_comes_out(kind):
-    """No other error, no warning of NumPy, no NaN without a word, nothing slow or large, no end of the process."""
+    """No other error, no warning of NumPy, no NaN without a warning, nothing slow or large, no end of the process."""
     cases = fuzz.run(kind, fuzz.QUICK[kind])
     assert len(cases) >= fuzz.QUICK[kind]
     assert sum(case["outcome"] == "answer" for case in cases) > len(cases) / 3

@@ -42,7 +42,7 @@ def test_slits_on_their_own_plane_are_refused():
 @pytest.mark.parametrize("spacing", [0.1, 0.33, 1.0])
 @pytest.mark.parametrize("z0", [0.0, -0.1])
 def test_profiles_too_coarse_for_themselves_say_so(spacing, z0):
-    """White noise: its spectrum is cut off at pi/dx, which no smooth path serves; warned of, with an honest estimate."""
+    """White noise: its spectrum is cut off at pi/dx, which no smooth contour serves; warned of, with an honest estimate."""
     rng = np.random.default_rng(0)
     wavelength = 343 / F
     k0, dx = 2 * np.pi / wavelength, spacing * wavelength

@@ -1,4 +1,4 @@
-"""How the accuracy study judges: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
+"""How the accuracy study counts: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
 
 import ast
 import importlib
@@ -100,8 +100,8 @@ def test_every_term_of_the_budget_is_in_the_table():
     [
         "a spectrum that is cut off",
         "rounding of a profile's samples",
-        "mixing of angles",
-        "brightness outside the window",
+        "interpolation over angles",
+        "peaks outside the window",
     ],
 )
 def test_terms_are_needed(name):
@@ -158,7 +158,7 @@ def taken_from_the_study(path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=FILES.get)
-def test_the_reference_uses_nothing_that_it_judges(path):
+def test_the_reference_uses_nothing_that_it_checks(path):
     """It sees definitions of media and sources alone, through the package's public names."""
     names, modules = taken_from_the_package(path)
     assert not modules

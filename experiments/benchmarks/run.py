@@ -92,7 +92,7 @@ def widths(options: argparse.Namespace) -> list[Row]:
 
 
 def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
-    """A frequency's scene, and the line that `beam_width` takes for it."""
+    """A slab at a frequency, and the contour that `beam_width` takes for it."""
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     path = np.array([SLAB.thickness])
     middle, half = stationary_phase.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)

@@ -189,7 +189,7 @@ def field_sum(
     return out
 
 
-def brightness(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
+def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     """|p| of the propagating waves where the beam lands on each plane: errors are over the largest |p| of a plane, (Z,).
 
     Rays of nine strong plane waves, and panels over the strong part of the spectrum; rays that go too far are left out.
@@ -241,7 +241,7 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     wrong, shallow = ([], 1.0) if s.rotated or sided else _misplaced(s)
     if wrong is None:
         return "backward modes not located"
-    elsewhere = np.zeros(case.z.size) if s.near is not None else brightness(s.m, s.source, case.z)
+    elsewhere = np.zeros(case.z.size) if s.near is not None else largest_elsewhere(s.m, s.source, case.z)
     best: Truth | None = None
     before = uncancelled = None
     why = "too many nodes"
