@@ -180,8 +180,9 @@ def test_beam_width_dimensions(frequency, angle):
     assert_labelled(ds)
 
 
-def test_progress_has_one_meaning(capsys):
+def test_progress_has_one_meaning(capsys, monkeypatch):
     """True shows a bar on stderr, for long work alone; False nothing; whatever the question."""
+    monkeypatch.setattr(progress, "SHOWN_AFTER", 1e6)  # however slow the machine
     questions = (
         lambda p: bp.field(SLAB, BEAM, F, 0.0, 0.1, progress=p),
         lambda p: bp.beam_width(SLAB, BEAM, F, progress=p),
@@ -197,6 +198,9 @@ def test_progress_has_one_meaning(capsys):
     bars = [progress.watched(True, range(3), "work"), progress.watched(False, range(3), "work")]
     assert [list(bar) for bar in bars] == [[0, 1, 2]] * 2
     assert type(bars[0]).__name__ == "tqdm"
+    monkeypatch.setattr(progress, "SHOWN_AFTER", 0.0)
+    assert list(progress.watched(True, range(3), "work")) == [0, 1, 2]
+    assert "work" in capsys.readouterr().err
 
 
 def test_progress_wraps_the_work():
