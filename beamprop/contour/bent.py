@@ -132,7 +132,7 @@ def _quadrature(planned: Planned, compared: Compared) -> Quadrature:
 
 def _with_wider_look(search: Search, planned: Planned, compared: Compared) -> Compared:
     """The same contours with the largest |p| of each plane looked for far outside of the window."""
-    checks = peak_outside.with_wider_look(search.slab, compared.checks, search.reach, planned.plan, planned.poles)
+    checks = peak_outside.with_wider_look(search.slab, compared.checks, search.extent, planned.plan, planned.poles)
     return compared._replace(checks=checks, estimate=error.estimate(checks, compared.first, compared.second))
 
 
@@ -155,6 +155,6 @@ def _good_by_itself(search: Search, planned: Planned, checks: Checks, best: Quad
         if worst < before:
             best = _quadrature(planned, compared)._replace(budget=best.budget)
         before, planned = worst, planned._replace(plan=plan._replace(window=plan.window + more))
-        if planned.plan.other().nodes > MOST_WIDENED:
+        if planned.plan.second_plan().nodes > MOST_WIDENED:
             break
     return best, planned

@@ -31,7 +31,7 @@ class Checks(NamedTuple):
 def check_points(
     x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, many: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach.
+    """A few positions and planes that stand for all: the ends, the faces, some between, and the source's own width about its middle.
 
     Half as many positions for `many` mixed beams, each of which is looked at through the others too.
     """

@@ -41,20 +41,20 @@ def choose_contour(
     An even grid of many points gets a pair of straight contours for FFTs, compared with a bent contour; any other a bent contour,
     compared with a second one. `guided` says whether the transfer knows guided modes (none without a slab).
     """
-    reach = _extent(s, sources, x, z, rtol)
+    extent = _extent(s, sources, x, z, rtol)
     many = sources.weights is not None and sources.requested.size > ESTIMATED
-    points, planes = check_points.check_points(x, z, sources.beam.centre, reach.source, s.thickness, many)
+    points, planes = check_points.check_points(x, z, sources.beam.centre, extent.source, s.thickness, many)
     if z.size > planes.size:
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
-    seen = survey(s, sources, transfer, points, planes, reach, rtol)
+    seen = survey(s, sources, transfer, points, planes, extent, rtol)
     checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
-    return _chosen(s, checks, reach, seen, x, rtol)._replace(checked_planes=planes)
+    return _chosen(s, checks, extent, seen, x, rtol)._replace(checked_planes=planes)
 
 
-def _chosen(s: SampledSlab, checks: Checks, reach: Extent, seen: Survey, x: np.ndarray, rtol: float) -> Quadrature:
+def _chosen(s: SampledSlab, checks: Checks, extent: Extent, seen: Survey, x: np.ndarray, rtol: float) -> Quadrature:
     if not checks.sources.beam.entire:
-        return propagating_quadrature(s, checks, reach, rtol, seen.sharp)
-    search, planned = begin(s, checks, reach, rtol, seen)
+        return propagating_quadrature(s, checks, extent, rtol, seen.sharp)
+    search, planned = begin(s, checks, extent, rtol, seen)
     if s.backward_branch is not None and checks.guided:
         return quadrature_in_stretches(search, crowded=False)
     tried = None  # the plan with whose second contour straight ones were compared
@@ -72,11 +72,10 @@ def _chosen(s: SampledSlab, checks: Checks, reach: Extent, seen: Survey, x: np.n
 def _extent(s: SampledSlab, sources: AngleInterpolation, x: np.ndarray, z: np.ndarray, rtol: float) -> Extent:
     tolerance = BELOW_RTOL * rtol
     beam = sources.beam
-    source = beam.reach(tolerance)
-    extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
+    farthest = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = min(sources.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
-    return Extent(s.k0, s.nearest_branch, band, max(extent, source), source, path)
+    return Extent(s.k0, s.nearest_branch, band, farthest, beam.reach(tolerance), path)
 
 
 def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:

@@ -42,7 +42,7 @@ def best_in_stretches(search: Search, crowded: bool) -> Tried:
     plan, closed = _first_plan(search)
     best, unclear, in_vain = None, False, 0
     for _ in range(TRIES):
-        pair = stretches.pair_of_contours(s, search.reach, plan, search.start, crowded, search.ends, closed)
+        pair = stretches.pair_of_contours(s, search.extent, plan, search.start, crowded, search.ends, closed)
         if pair is None:
             plan, unclear = plan._replace(depth=plan.depth / 3, height=plan.height / 3), True
             continue
@@ -60,8 +60,8 @@ def best_in_stretches(search: Search, crowded: bool) -> Tried:
 
 def _first_plan(search: Search) -> tuple[stretches.Plan, bool]:
     """The first plan, and whether it is closed: all spectra end at the last of their ends that matter."""
-    reach, ends = search.reach, search.ends
-    plan = stretches.plan_stretches(reach, reach.path - search.slab.thickness, search.rtol, search.noise)
+    extent, ends = search.extent, search.ends
+    plan = stretches.plan_stretches(extent, extent.path - search.slab.thickness, search.rtol, search.noise)
     closed = bool(ends.size) and bool(ends[-1] == np.max(search.checks.sources.spectrum_ends(search.slab.k0)))
     return (plan._replace(band=1.01 * float(ends[-1])) if closed else plan), closed
 

@@ -29,23 +29,23 @@ WIDER, ALONG = 6.0, 4.0
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 
-def with_wider_look(s: SampledSlab, checks: Checks, reach: Extent, plan: BentPlan, poles: MisplacedPoles) -> Checks:
+def with_wider_look(s: SampledSlab, checks: Checks, extent: Extent, plan: BentPlan, poles: MisplacedPoles) -> Checks:
     """Checks that know of the peaks far outside; the same ones where the window would take too many plane waves."""
-    extent = WIDER * max(reach.extent, reach.source) + ALONG * max(reach.path, 0.0)
-    wide = paths.plan_bent(reach._replace(extent=extent, band=plan.band), ROUGH, sharp=plan.sharp)
+    across = WIDER * extent.across + ALONG * max(extent.path, 0.0)
+    wide = paths.plan_bent(extent._replace(farthest=across, band=plan.band), ROUGH, sharp=plan.sharp)
     depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
-    window = max(wide.window, 1.2 * extent + 0.8 * math.log(10 / ROUGH) / depth)
+    window = max(wide.window, 1.2 * across + 0.8 * math.log(10 / ROUGH) / depth)
     first = wide._replace(depth=depth, window=window, crossing=plan.crossing, gap=plan.gap)
-    second = first.other()
+    second = first.second_plan()
     if second.nodes > MOST_WAVES:
         return checks
     requested = checks.sources.requested
     chosen = checks.sources.spread(5)
     beams = AngleInterpolation(checks.sources.beam, requested[chosen])
-    x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
+    x = across * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(across * min(plan.band, 3 * extent.k0)) + 1))
     peaks = []
     for i, p in enumerate((first, second)):
-        contour = add_residues(s, paths.bent_contour(p), poles, extent, reach.path, bool(i))
+        contour = add_residues(s, paths.bent_contour(p), poles, across, extent.path, bool(i))
         right, left = beam_amplitudes(checks.k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
             summed = sums.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)

@@ -18,14 +18,14 @@ from .search import MOST_PLANE_WAVES
 DEEPEST_DIP = 0.3
 
 
-def _dip(s: SampledSlab, reach: Extent, rtol: float, sharp: float) -> float:
+def _dip(s: SampledSlab, extent: Extent, rtol: float, sharp: float) -> float:
     """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
     growth = min(paths.DEEPEST, max(0.0, math.log(rtol / (100 * paths.EPS))))
-    dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
+    dip = min(DEEPEST_DIP, growth / (extent.k0 * extent.across))
     if not math.isfinite(sharp):
         return 0.0
-    found = misplaced.misplaced(s, 1.05 * dip * reach.k0, (1 - 1e-6) * reach.k0, 1e-6 * reach.k0)
-    return dip if not found.poles else 0.0
+    backward = misplaced.misplaced(s, 1.05 * dip * extent.k0, (1 - 1e-6) * extent.k0, 1e-6 * extent.k0)
+    return dip if not backward.poles else 0.0
 
 
 #: The most plane waves of a rotated beam whose width is asked for: their error is estimated within some
@@ -51,10 +51,10 @@ def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
 ROUNDS = 6
 
 
-def propagating_quadrature(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, sharp: float) -> Quadrature:
+def propagating_quadrature(s: SampledSlab, checks: Checks, extent: Extent, rtol: float, sharp: float) -> Quadrature:
     """Gauss nodes over the propagating waves, raised until two numbers of nodes, on contours that dip differently, agree."""
-    count = _rays(reach.k0, reach.extent + reach.path)
-    dip = _dip(s, reach, rtol, sharp) if checks.guided else 0.0
+    count = _rays(extent.k0, extent.across + extent.path)
+    dip = _dip(s, extent, rtol, sharp) if checks.guided else 0.0
     for _ in range(ROUNDS):
         memory.check_contour(1.4 * count, checks.sources.angles.size, checks.z.size)
         coarse, fine = (

@@ -32,7 +32,7 @@ class Search(NamedTuple):
 
     slab: SampledSlab
     checks: Checks
-    reach: Extent
+    extent: Extent
     rtol: float
     noise: float  #: relative rounding of the response
     sharp: float  #: distance from kx = 0 of the nearest singularity
@@ -41,12 +41,7 @@ class Search(NamedTuple):
     @property
     def start(self) -> float:
         """Re kx from which poles are searched for."""
-        return min(1e-3 * self.slab.k0, 0.1 * min(self.sharp, self.reach.branch))
-
-    @property
-    def across(self) -> float:
-        """Length along x over which phases turn."""
-        return max(self.reach.extent, self.reach.source)
+        return min(1e-3 * self.slab.k0, 0.1 * min(self.sharp, self.extent.branch))
 
 
 class Planned(NamedTuple):
@@ -67,29 +62,29 @@ class Planned(NamedTuple):
         return bool(self.poles.poles) or math.isfinite(self.poles.crossing)
 
 
-def begin(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: survey.Survey) -> tuple[Search, Planned]:
+def begin(s: SampledSlab, checks: Checks, extent: Extent, rtol: float, seen: survey.Survey) -> tuple[Search, Planned]:
     """The search, its band no wider than what arrives, and a first plan of which no pole is known."""
-    search = Search(s, checks, reach, rtol, seen.noise, seen.sharp, np.empty(0))
+    search = Search(s, checks, extent, rtol, seen.noise, seen.sharp, np.empty(0))
     if too_many_plane_waves(first_plan(search)):  # the spectrum of a sharp edge, but a slab lets little of it through
-        reach = reach._replace(band=survey.arriving_band(s, checks, reach, BELOW_RTOL * rtol))
-        search = search._replace(reach=reach)
+        extent = extent._replace(band=survey.arriving_band(s, checks, extent, BELOW_RTOL * rtol))
+        search = search._replace(extent=extent)
     if first_plan(search).nodes > MANY_PLANE_WAVES:
         low = checks.sources.low(s.k0, 1e-6 * rtol)
-        if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, reach.band):
-            search = search._replace(reach=reach._replace(low=low))
+        if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, extent.band):
+            search = search._replace(extent=extent._replace(low=low))
     if checks.sources.requested.size <= MOST_CUT:
-        search = search._replace(ends=survey.cut_spectra(s, checks, search.reach, 0.1 * rtol))
+        search = search._replace(ends=survey.cut_spectra(s, checks, search.extent, 0.1 * rtol))
     return search, Planned(first_plan(search), misplaced.NONE, 0.0 if checks.guided else math.inf)
 
 
 def first_plan(search: Search, deepest: float = math.inf) -> BentPlan:
     """A bent plan from the error terms, no deeper than `deepest`."""
-    return paths.plan_bent(search.reach, search.rtol, search.noise, deepest, search.sharp)
+    return paths.plan_bent(search.extent, search.rtol, search.noise, deepest, search.sharp)
 
 
 def too_many_plane_waves(plan: BentPlan) -> bool:
     """Whether a plan, or the second one that it is compared with, takes too many plane waves."""
-    return plan.other().nodes > MOST_PLANE_WAVES
+    return plan.second_plan().nodes > MOST_PLANE_WAVES
 
 
 def with_poles(search: Search, planned: Planned) -> Planned:
@@ -123,11 +118,11 @@ def pair_of_contours(search: Search, planned: Planned) -> tuple[Contour, Contour
             search.slab,
             paths.bent_contour(plan),
             planned.poles,
-            search.across,
-            search.reach.path,
+            search.extent.across,
+            search.extent.path,
             plan is not planned.plan,
         )
-        for plan in (planned.plan, planned.plan.other())
+        for plan in (planned.plan, planned.plan.second_plan())
     )
     return first, second
 
@@ -137,7 +132,7 @@ def refusal(search: Search) -> str:
     plan = first_plan(search)
     # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
     shallow = [first_plan(search, plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81)]
-    depths = [1.05 * p.depth for p in (plan, *shallow) if p is plan or p.other().nodes < MOST_PLANE_WAVES / 4]
+    depths = [1.05 * p.depth for p in (plan, *shallow) if p is plan or p.second_plan().nodes < MOST_PLANE_WAVES / 4]
     loss = misplaced.enough_loss(search.slab, depths, 1.15 * plan.band, search.start)
     remedy = (
         ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"

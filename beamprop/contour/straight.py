@@ -46,7 +46,7 @@ def quadrature_on_straight_contours(
         return None, planned
     plane_waves, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
-        straight = paths.plan_straight(search.reach, rtol, tighten, search.noise)
+        straight = paths.plan_straight(search.extent, rtol, tighten, search.noise)
         n = fast_length(max(math.ceil(share * straight.window / dx), x.size))
         if not fft_is_cheaper(n, plane_waves, x.size):
             break

@@ -47,22 +47,22 @@ class Plan(NamedTuple):
     finer: float = 1.0  #: panels are this much shorter than they are first planned
     nodes: int = 20  #: Gauss nodes of a panel
 
-    def other(self) -> Plan:
+    def second_plan(self) -> Plan:
         """A plan that shares no number with this one, to estimate its error by."""
         return Plan(
             self.depth * 0.83, self.height * 0.8, self.slope * 0.8, self.band * 1.12, self.finer * 1.15, self.nodes + 3
         )
 
 
-def plan_stretches(reach: Extent, outside: float, rtol: float, noise: float) -> Plan:
+def plan_stretches(extent: Extent, outside: float, rtol: float, noise: float) -> Plan:
     """A first plan. `outside` is the distance along z in the half-spaces; `noise` the relative rounding of S h.
 
     exp(depth X) magnifies rounding and what lies on the other side, as does exp(height Z) above the axis, where waves in the
     half-spaces grow.
     """
     growth = min(max(1.5, math.log(rtol / (30 * noise))), 6.0)
-    depth = min(SLOPE * reach.k0, growth / max(reach.extent, reach.source))
-    return Plan(depth, min(depth, growth / 3 / max(outside, 1e-3 / reach.k0)), 0.6, reach.band)
+    depth = min(SLOPE * extent.k0, growth / extent.across)
+    return Plan(depth, min(depth, growth / 3 / max(outside, 1e-3 / extent.k0)), 0.6, extent.band)
 
 
 # --- which side -------------------------------------------------------------------------------------------
@@ -237,7 +237,7 @@ def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
 
 def pair_of_contours(
     s: SampledSlab,
-    reach: Extent,
+    extent: Extent,
     plan: Plan,
     start: float,
     crowded: bool,
@@ -249,7 +249,7 @@ def pair_of_contours(
     Parameters
     ----------
     s : SampledSlab
-    reach : Reach
+    extent : Extent
     plan : Plan
     start : float
         Re kx from which poles are searched for.
@@ -263,7 +263,7 @@ def pair_of_contours(
     pair of Line
         None where poles cannot be told apart.
     """
-    end = plan.other().band
+    end = plan.second_plan().band
     try:
         if crowded:
             bands = bands_of(s, end)
@@ -279,11 +279,11 @@ def pair_of_contours(
     parts = met_at_ends(met_at_branches(s, parts), ends)
     if closed:
         parts = [part for part in parts if part.hi <= ends[-1]]
-    across = max(reach.extent, reach.source)
+    across = extent.across
     contours = []
-    for second, p in ((False, plan), (True, plan.other())):
-        contour = stretched_contour(s, parts, p, across, reach.path - s.thickness)
-        both = [residues.add_residues(s, contour, poles, across, reach.path, second) for poles in found]
+    for second, p in ((False, plan), (True, plan.second_plan())):
+        contour = stretched_contour(s, parts, p, across, extent.path - s.thickness)
+        both = [residues.add_residues(s, contour, poles, across, extent.path, second) for poles in found]
         around = sum(circled.circles for circled in both)
         k = np.concatenate([*(circled.k[: circled.circles] for circled in both), contour.k])
         weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), contour.weight])

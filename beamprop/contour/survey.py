@@ -32,7 +32,7 @@ def survey(
     transfer: TransferFunction,
     x: np.ndarray,
     z: np.ndarray,
-    reach: Extent,
+    extent: Extent,
     rtol: float,
 ) -> Survey:
     """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
@@ -40,7 +40,7 @@ def survey(
 
     All at the first and the last plane: if the beam lands among the positions there, it does so between.
     """
-    k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
+    k = np.linspace(0.03, min(extent.band, 3 * s.k0), 24) * (1 - 0.05j)
     requested = sources.requested
     chosen = sources.spread(3)
     rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[chosen]])
@@ -48,8 +48,8 @@ def survey(
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
     # Gauss panels over propagating waves are wider than the step of a trapezoid rule
-    wide = min(0.2 * reach.branch, math.sqrt(2 * s.k0 / max(reach.path, 1e-9)))
-    first_node = math.pi / paths.plan_bent(reach, rtol).window if sources.beam.entire else wide
+    wide = min(0.2 * extent.branch, math.sqrt(2 * s.k0 / max(extent.path, 1e-9)))
+    first_node = math.pi / paths.plan_bent(extent, rtol).window if sources.beam.entire else wide
     near = near_normal.around(np.array([first_node]))
     with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is not calm
         h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
@@ -121,9 +121,9 @@ def _brightness(
     return np.nan_to_num(largest.min(axis=0), nan=0.0, posinf=0.0)
 
 
-def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> float:
+def arriving_band(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float) -> float:
     """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
-    k = np.geomspace(0.01 * reach.k0, reach.band, 400)
+    k = np.geomspace(0.01 * extent.k0, extent.band, 400)
     h = np.abs(checks.transfer(k.astype(complex), checks.z))
     launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
     size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # by decade of kx
@@ -133,10 +133,10 @@ def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: floa
     return float(k[min(last + 1, k.size - 1)])
 
 
-def cut_spectra(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> np.ndarray:
+def cut_spectra(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float) -> np.ndarray:
     """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
     ends = checks.sources.spectrum_ends(s.k0)
-    ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
+    ends = ends[(ends > 0) & (ends <= extent.band * (1 + 1e-9))]
     if not ends.size:
         return ends
     # spectra of edges have zeros: the last twentieth in front of each end stands for it
