@@ -68,7 +68,7 @@ def plan_stretches(extent: Extent, outside: float, rtol: float, noise: float) ->
 # --- which side -------------------------------------------------------------------------------------------
 
 #: Samples along the axis that locate bands: evenly spaced, and 1000 a decade from k0/1000 to k0. A band narrower than a 60 000th of the
-#: contour's band is missed, which the difference of two contours shows; twice as many samples take twice their 60 ms.
+#: contour's band is missed, which the difference of two contours shows; twice as many take twice 30 ms.
 SAMPLES, DECADES = 60_000, 3000
 #: Relative imaginary step of derivatives: they are right to STEP^2 = 1e-14, for nothing is subtracted.
 STEP = 1e-7
