@@ -80,12 +80,15 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
         planned, attempts = _told_apart(search, planned, attempts)
         if planned.unclear:
             break
-        best = best or _in_stretches_first(search)
+        if best is None and search.ends.size:  # where spectra are cut off a contour meets the axis
+            best = in_stretches.best_in_stretches(search, crowded=False).best
         if best is not None and best.worst <= rtol:
             return best, planned
         compared = error.compare(checks, pair_of_contours(search, planned), rtol)
-        if best is not None and by_window is None and compared.estimate.worst > rtol:  # a wider window alone did not do
-            by_window, compared = compared.checks, _with_wider_look(search, planned, compared)
+        # widening the first plan did not do: is the peak outside?
+        if best is not None and by_window is None and compared.estimate.worst > rtol:
+            by_window, checks = compared.checks, peak_outside.with_wider_look(search, planned, compared.checks)
+            compared = compared._replace(checks=checks, estimate=error.estimate(checks, *compared[:2]))
         checks, (worst, edge) = compared.checks, (compared.estimate.worst, compared.estimate.edge)
         attempts = attempts.after(worst, best.worst if best is not None else math.inf)
         if best is None or worst < best.worst:
@@ -100,7 +103,7 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
 
 
 def _told_apart(search: Search, planned: Planned, attempts: Attempts) -> tuple[Planned, Attempts]:
-    """The poles of a plan that comes nearer to the axis as often as it may, until they can be told apart."""
+    """The plan with its poles, nearer to the axis as often as allowed, until they can be separated."""
     planned = with_poles(search, planned)
     while planned.unclear and attempts.shrinks and attempts.made < ATTEMPTS:
         attempts = attempts._replace(shrinks=attempts.shrinks - 1, made=attempts.made + 1)
@@ -111,11 +114,6 @@ def _told_apart(search: Search, planned: Planned, attempts: Attempts) -> tuple[P
     return planned, attempts
 
 
-def _in_stretches_first(search: Search) -> Quadrature | None:
-    """The most accurate contour in stretches, which meets the axis where spectra are cut off; None where none is."""
-    return in_stretches.best_in_stretches(search, crowded=False).best if search.ends.size else None
-
-
 def _without_any(search: Search, planned: Planned) -> Quadrature:
     """A contour in stretches for a periodic slab whose poles cannot be told apart, or the refusal of the question."""
     if planned.unclear and search.slab.periodic:
@@ -124,15 +122,8 @@ def _without_any(search: Search, planned: Planned) -> Quadrature:
 
 
 def _quadrature(planned: Planned, compared: Compared) -> Quadrature:
-    first = compared.first
-    circles = bool(planned.poles.poles)
-    return Quadrature(first.contour, compared.estimate.budget, circles=circles, amplitudes=first.amplitudes)
-
-
-def _with_wider_look(search: Search, planned: Planned, compared: Compared) -> Compared:
-    """The same contours with the largest |p| of each plane looked for far outside of the window."""
-    checks = peak_outside.with_wider_look(search.slab, compared.checks, search.extent, planned.plan, planned.poles)
-    return compared._replace(checks=checks, estimate=error.estimate(checks, compared.first, compared.second))
+    contour, _, amplitudes, _ = compared.first
+    return Quadrature(contour, compared.estimate.budget, circles=bool(planned.poles.poles), amplitudes=amplitudes)
 
 
 #: How often a contour that keeps rtol by a peak far outside is widened for the field inside the window, and the most plane waves that it

@@ -171,7 +171,8 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     """The terms of the error of the first contour by requested beam and plane, (A, Z)."""
     sources = checks.sources
     x = checks.x - sources.beam.centre
-    extremes = _extreme_beams(sources)
+    # interpolated beams that are also summed: the extreme angles, where interpolation errs most, and three between
+    extremes = np.empty(0, int) if sources.weights is None else sources.spread(5)
     summed, themselves = _summed(checks, first, extremes, x)
     a = sources.interpolated_to(summed)
     b = sources.interpolated_to(fields_of(checks, second) if second.fields is None else second.fields)
@@ -206,11 +207,6 @@ def _weighed(term: np.ndarray, seen: np.ndarray) -> np.ndarray:
 def _largest(checks: Checks, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """The largest |p| of each plane (A, Z): the lesser of two fields' (A, Z, X), or the peak where the beam lands."""
     return np.maximum(np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2)), checks.peaks_outside)
-
-
-def _extreme_beams(sources: AngleInterpolation) -> np.ndarray:
-    """Indices of five interpolated beams that are also summed: the extreme angles, where interpolation errs most, and three between."""
-    return np.empty(0, int) if sources.weights is None else sources.spread(5)
 
 
 def _summed(checks: Checks, contour: Sampled, extremes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

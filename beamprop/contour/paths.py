@@ -48,7 +48,6 @@ class Contour(NamedTuple):
     step: Any = 0.0
     first: int = 0
     sigma: Any = 0.0
-    delta: Any = 0.0
     circles: int = 0
     closed: bool = False  #: whether all spectra vanish beyond its end
 
@@ -131,9 +130,7 @@ def straight_contour(plan: StraightPlan) -> Contour:
     chi[..., : 1 - first] = left[..., size + first :]
     right = min(size, m[-1])
     chi[..., 1 - first : 1 - first + right] -= np.conj(left[..., :size][..., ::-1][..., :right])
-    return Contour(
-        k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma, plan.delta
-    )
+    return Contour(k, chi * (ds[..., None] / (2 * math.pi)), ds if ds.ndim else float(ds), first, plan.sigma)
 
 
 class BentPlan(NamedTuple):

@@ -11,13 +11,11 @@ import math
 
 import numpy as np
 
-from ..modes.misplaced import MisplacedPoles
-from ..response.sampled_slab import SampledSlab
 from ..sources.angles import AngleInterpolation
 from . import paths, sums
 from .check_points import Checks, interpolated
-from .paths import BentPlan, Extent
 from .residues import add_residues
+from .search import Planned, Search
 from .sums import beam_amplitudes
 
 #: The window over the requested one, and over the way along z: waves at up to 76 degrees land within four times their way along z. Six
@@ -28,10 +26,11 @@ WIDER, ALONG = 6.0, 4.0
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 
-def with_wider_look(s: SampledSlab, checks: Checks, extent: Extent, plan: BentPlan, poles: MisplacedPoles) -> Checks:
+def with_wider_look(search: Search, planned: Planned, checks: Checks) -> Checks:
     """Checks with the peaks far outside; unchanged where the window would take too many plane waves."""
-    across = WIDER * extent.across + ALONG * max(extent.path, 0.0)
-    extent = extent._replace(farthest=across, band=plan.band)
+    plan, k0 = planned.plan, search.slab.k0
+    across = WIDER * search.extent.across + ALONG * max(search.extent.path, 0.0)
+    extent = search.extent._replace(farthest=across, band=plan.band)
     wide = paths.plan_bent(extent, ROUGH, sharp=plan.sharp)
     depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
     window = max(wide.window, 1.2 * across + 0.8 * math.log(10 / ROUGH) / depth)
@@ -43,11 +42,11 @@ def with_wider_look(s: SampledSlab, checks: Checks, extent: Extent, plan: BentPl
     chosen = checks.sources.spread(5)
     beams = AngleInterpolation(checks.sources.beam, requested[chosen])
     # a position for each radian of the steepest plane waves, up to 3 k0
-    x = across * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(across * min(plan.band, 3 * extent.k0)) + 1))
+    x = across * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(across * min(plan.band, 3 * k0)) + 1))
     peaks = []
-    for i, p in enumerate((first, second)):
-        contour = add_residues(s, paths.bent_contour(p), [poles], extent, bool(i))
-        right, left = beam_amplitudes(checks.k0, beams, contour)
+    for p in (first, second):
+        contour = add_residues(search.slab, paths.bent_contour(p), [planned.poles], extent, p is second)
+        right, left = beam_amplitudes(k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
             summed = sums.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
             peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))

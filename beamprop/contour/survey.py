@@ -121,12 +121,16 @@ def _brightness(
     return np.nan_to_num(largest.min(axis=0), nan=0.0, posinf=0.0)
 
 
+def _strengths(s: SampledSlab, checks: Checks, k: np.ndarray) -> np.ndarray:
+    """|S H| of plane waves to both sides on each plane, of the strongest beam; 0 where it is not finite; (Z, n)."""
+    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
+    return np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+
+
 def arriving_band(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float) -> float:
     """|kx| up to which more than `tolerance` of the strongest plane wave arrives on any plane."""
     k = np.geomspace(0.01 * extent.k0, extent.band, 400)
-    h = np.abs(checks.transfer(k.astype(complex), checks.z))
-    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
-    size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # |S H| dkx for equal steps of log kx
+    size = _strengths(s, checks, k) * k  # |S H| dkx for equal steps of log kx
     size = np.maximum.accumulate(size[:, ::-1], axis=1)[:, ::-1]  # edges have spectra with zeros
     strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
     last = int(np.flatnonzero(strong)[-1]) if np.any(strong) else 0
@@ -142,7 +146,6 @@ def cut_spectra(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float
     # spectra of edges have zeros: each end is judged by the largest of nine places in the last twentieth before it
     before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
     k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
-    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
-    size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+    size = _strengths(s, checks, k)
     at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
     return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]

@@ -6,7 +6,7 @@ A function is given as (value, logarithm), ``value exp(logarithm)``, so that it 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -204,7 +204,7 @@ def outlines(
     high: np.ndarray,
     nodes: int,
     near: np.ndarray | None = None,
-    lifted: tuple[np.ndarray, np.ndarray] | None = None,
+    lifted: Sequence[np.ndarray] | None = None,
 ) -> np.ndarray:
     """Outlines of boxes (P,), counter-clockwise, (P, n): `nodes` on the longer sides, a quarter on sides half as long or less.
 

@@ -129,9 +129,8 @@ def _branch_beside(s: SampledSlab) -> float:
 
 def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
     """Whether there is a mode in a box whose upper side is raised by `above` to the right of `edge`: one outline, as mostly none is."""
-    values = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
-    left, right, low, high, near, beyond, lift = values
-    path = outlines(left, right, low, high, 48, near, (beyond, lift))[0]
+    left, right, low, high, near, *lifted = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
+    path = outlines(left, right, low, high, 48, near, lifted)[0]
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
