@@ -37,11 +37,11 @@ def quadrature_in_stretches(search: Search, crowded: bool) -> Quadrature:
 
 def best_in_stretches(search: Search, crowded: bool) -> Tried:
     """Shorten the panels, or widen the band where its edge is what is missing, until two contours in stretches agree."""
-    s, checks, rtol = search.slab, search.checks, search.rtol
-    plan, closed = _first_plan(search)
+    checks, rtol = search.checks, search.rtol
+    plan = _first_plan(search)
     best, unclear, in_vain = None, False, 0
     for _ in range(TRIES):
-        pair = stretches.pair_of_contours(s, search.extent, plan, search.start, crowded, search.ends, closed)
+        pair = stretches.pair_of_contours(search, plan, crowded)
         if pair is None:
             plan, unclear = plan._replace(depth=plan.depth / 3, height=plan.height / 3), True
             continue
@@ -57,12 +57,12 @@ def best_in_stretches(search: Search, crowded: bool) -> Tried:
     return Tried(best, unclear)
 
 
-def _first_plan(search: Search) -> tuple[stretches.Plan, bool]:
-    """The first plan, and whether its contour is closed: all spectra vanish beyond the last end of those that are cut off."""
+def _first_plan(search: Search) -> stretches.Plan:
+    """The first plan; closed if all spectra vanish beyond the last end of those that are cut off."""
     extent, ends = search.extent, search.ends
     plan = stretches.plan_stretches(extent, extent.path - search.slab.thickness, search.rtol, search.noise)
     closed = bool(ends.size) and bool(ends[-1] == np.max(search.checks.sources.spectrum_ends(search.slab.k0)))
-    return (plan._replace(band=1.01 * float(ends[-1])) if closed else plan), closed
+    return plan._replace(band=1.01 * float(ends[-1]), closed=True) if closed else plan
 
 
 def next_plan(plan: stretches.Plan, edge: float, rtol: float) -> stretches.Plan:

@@ -14,8 +14,8 @@ import numpy as np
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
 
-#: Below this |H| a difference over step H may overflow or lose digits: the smallest normal number, 2e-308, leaves 58 decades for the step in
-#: kx and for H's rounding.
+#: Below this |H| a difference over step H may overflow or lose digits: the smallest normal number, 2e-308, leaves 58 decades for the
+#: step in kx and for H's rounding.
 FAINT = 1e-250
 #: Plane waves of more than this share of the largest |H| are strong. A plain choice: with less faint tails widen the footprint, and the
 #: window that is sampled; with more its edges, where |p| is a tenth of its peak, are cut.

@@ -27,6 +27,7 @@ from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab, on_the_right
 from . import residues
 from .paths import SLOPE, Contour, Extent
+from .search import Search
 
 
 class Stretch(NamedTuple):
@@ -46,11 +47,17 @@ class Plan(NamedTuple):
     band: float  #: Re kx of its end
     finer: float = 1.0  #: factor by which there are more panels than in the first plan
     nodes: int = 20  #: Gauss nodes of a panel
+    closed: bool = False  #: whether the contour ends where the last spectrum does: see `Contour`
 
     def second_plan(self) -> Plan:
         """A plan to estimate this one's error by: lower, wider, of shorter panels with more nodes."""
-        return Plan(
-            self.depth * 0.83, self.height * 0.8, self.slope * 0.8, self.band * 1.12, self.finer * 1.15, self.nodes + 3
+        return self._replace(
+            depth=self.depth * 0.83,
+            height=self.height * 0.8,
+            slope=self.slope * 0.8,
+            band=self.band * 1.12,
+            finer=self.finer * 1.15,
+            nodes=self.nodes + 3,
         )
 
 
@@ -236,54 +243,30 @@ def _even(start: complex, stop: complex) -> np.ndarray:
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def pair_of_contours(
-    s: SampledSlab,
-    extent: Extent,
-    plan: Plan,
-    start: float,
-    crowded: bool,
-    ends: np.ndarray,
-    closed: bool,
-) -> tuple[Contour, Contour] | None:
+def pair_of_contours(search: Search, plan: Plan, crowded: bool) -> tuple[Contour, Contour] | None:
     """A contour in stretches and a second one to estimate its error by, with circles around the poles on their wrong side.
 
-    Parameters
-    ----------
-    s : SampledSlab
-    extent : Extent
-    plan : Plan
-    start : float
-        Re kx from which poles are searched for.
-    crowded : bool
-        Whether the slab is periodic and guides more modes than can be located: its bands decide where the contour passes.
-    ends : array, rad/m
-        |kx| where spectra are cut off.
-    closed : bool
-        Whether all spectra vanish beyond the last of `ends`.
-
-    Returns
-    -------
-    pair of Contour
-        None where poles cannot be told apart.
+    `crowded` says whether the slab is periodic and guides more modes than can be located, so that its bands decide where the contour
+    passes. None where poles cannot be separated.
     """
-    end = plan.second_plan().band
+    s, extent, end = search.slab, search.extent, plan.second_plan().band
     try:
         if crowded:
             bands = bands_of(s, end)
             parts, wrong = bands.parts, misplaced_in_gaps(s, bands, max(plan.depth, plan.height))
         else:
-            wrong = [misplaced.misplaced(s, 1.05 * plan.depth, end, start)]
+            wrong = [misplaced.misplaced(s, 1.05 * plan.depth, end, search.start)]
             crossing = wrong[0].crossing
             parts = [Stretch(0.0, crossing, -1), *([Stretch(crossing, math.inf, 1)] if crossing < end else [])]
     except TooManyModes:
         return None
     if misplaced.UNCLEAR in wrong:
         return None
-    parts = met_at_ends(met_at_branches(s, parts), ends)
-    if closed:
-        parts = [part for part in parts if part.hi <= ends[-1]]
+    parts = met_at_ends(met_at_branches(s, parts), search.ends)
+    if plan.closed:
+        parts = [part for part in parts if part.hi <= search.ends[-1]]
     contours = []
     for second, p in ((False, plan), (True, plan.second_plan())):
-        contour = stretched_contour(s, parts, p, extent.across, extent.path - s.thickness)._replace(closed=closed)
+        contour = stretched_contour(s, parts, p, extent.across, extent.path - s.thickness)._replace(closed=plan.closed)
         contours.append(residues.add_residues(s, contour, wrong, extent, second))
     return contours[0], contours[1]

@@ -47,14 +47,14 @@ def survey(
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
-    # Gauss panels over propagating waves are wider than the step of a trapezoid rule
+    # a fifth of kb, or where the phase kx^2 Z/2k0 is 1: Gauss panels over propagating waves resolve no more at first
     wide = min(0.2 * extent.branch, math.sqrt(2 * s.k0 / max(extent.path, 1e-9)))
     first_node = math.pi / paths.plan_bent(extent, rtol).window if sources.beam.entire else wide
     near = near_normal.around(np.array([first_node]))
     with np.errstate(over="ignore", invalid="ignore"):  # is_calm takes what is not finite for singular
         h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
-    allowed = max(0.01 * rtol, 30 * max(noise, EPS))
+    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # no part of rtol, but clear of rounding
     sharp = math.inf
     if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
         sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)

@@ -208,8 +208,8 @@ def outlines(
 ) -> np.ndarray:
     """Outlines of boxes (P,), counter-clockwise, (P, n): `nodes` on the longer sides, a quarter on sides half as long or less.
 
-    With `near` (P,), Re kx of a branch point, there are additional nodes on the horizontal sides beside it. `lifted` raises the
-    upper side, to the right of Re kx = lifted[0], by lifted[1].
+    `windings` adds nodes where D turns fast. With `near` (P,), Re kx of a branch point, there are additional
+    nodes on the horizontal sides beside it. `lifted` raises the upper side, to the right of Re kx = lifted[0], by lifted[1].
     """
     width, height = right - left, high - low
     across, up = (

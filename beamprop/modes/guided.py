@@ -112,7 +112,7 @@ def with_directions(s: SampledSlab, kx: list[complex], of: DispersionOf = disper
 
 def _direction(s: SampledSlab, k: complex, cluster: bool, of: DispersionOf) -> int:
     """+1 if the mode decays along +Re kx, or would with a small loss."""
-    # a cluster is located to half the digits only, and takes more loss to show its direction
+    # nearer to the axis than `blur`, over kx, a mode may lie on it; a cluster, located to half the digits, takes more loss too
     blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
     if abs(k.imag) > blur * abs(k):
         return 1 if k.imag > 0 else -1

@@ -189,7 +189,7 @@ MOST_PER_INTERVAL = 20_000
 
 def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles | None:
     """The crossing of the axis that leaves the fewest poles misplaced; None if these are too many still."""
-    edge = s.last_branch * (1 + 1e-3)
+    edge = s.last_branch * (1 + 1e-3)  # outlines keep off the branch point, and fit between it and the band's end
     if band < 1.1 * edge:
         return None
     places = np.geomspace(edge, band, PLACES + 1)
@@ -245,8 +245,8 @@ def _crossing_at(
 def _free_gap(f: Dispersion, low: float, high: float, depth: float, edge: float, band: float) -> tuple[float, float]:
     """A crossing of the axis between `low` and `high`, and the distance around it in which there is no mode."""
     crossing = math.sqrt(low * high)
-    gap = min(crossing - edge, band - crossing) * (1.0 if high > low else 0.3)
-    for _ in range(8):
+    gap = min(crossing - edge, band - crossing) * (1.0 if high > low else 0.3)  # a single place has modes on both sides
+    for _ in range(8):  # down to 1/128 of it
         box = Box(crossing - gap, crossing + gap, -max(depth, gap), max(depth, gap))
         if winding(f, box.outline(24), FINEST * band, MOST_VALUES) == 0:
             return crossing, gap
