@@ -127,7 +127,7 @@ def _quadrature(planned: Planned, compared: Compared) -> Quadrature:
 
 
 #: How often a contour that keeps rtol by a peak far outside is widened for the field inside the window, and the most plane waves that it
-#: may have then, a response of 80 kB a plane. A plain choice: nobody has stated that accuracy, and it is not to cost much.
+#: may have then, a response of 80 kB a plane. A plain choice: rtol does not promise that accuracy, which may not cost much.
 WIDENED, MOST_WIDENED = 5, 5_000
 
 

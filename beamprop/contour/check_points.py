@@ -67,7 +67,7 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
 #: behind: nodes of standing waves, of two waves with amplitudes in the ratio (1 - 0.3)/(1 + 0.3) = 0.54 or nearer to 1.
 DARKEST, DARKER = 4, 0.3
 #: A plane is dark to rounding if |p| is LIGHTLESS times that BESIDE wavelengths in front and behind: next to a node a standing wave has
-#: risen to sin(2 pi BESIDE) = 6e-3 of its antinode, of which 1e-11 is the rounding of a sum of some hundred terms.
+#: risen to sin(2 pi BESIDE) = 6e-3 of its antinode, and 1e-11 of that, 300 EPS of the antinode, is rounding of the response.
 BESIDE, LIGHTLESS = 1e-3, 1e-11
 
 

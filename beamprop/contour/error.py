@@ -24,7 +24,7 @@ from .paths import EPS, Contour
 from .sums import beam_amplitudes
 
 #: Relative change of kx and w at which a response rounds anew: a few units of the last place. The response itself changes by SHIFT
-#: times its phase, which `long_phases` allows for.
+#: times its phase, which counts as error too.
 SHIFT = 4 * EPS
 #: Planes on which the largest |p| is below this are dark: 1e-16 of what adds up to it is hardly above the smallest normal number, 2e-308,
 #: below which digits are lost.

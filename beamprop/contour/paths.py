@@ -65,7 +65,7 @@ class Extent(NamedTuple):
 
     @property
     def across(self) -> Any:
-        """X, the length along x over which phases turn: points are farther from the middle than the source's edge, or none is."""
+        """X, the length along x over which phases turn: to the farthest point, or to the source's edge if that is farther."""
         return np.maximum(self.farthest, self.source)
 
 
@@ -203,8 +203,8 @@ def plan_bent(
     deep = min(growth / X, SLOPE * broad, deepest)
     decades = math.log(10 / rtol)
     nearest = min(extent.branch, sharp)
-    if SLOPE * nearest < deep / 2:  # staying above it would double the window, and with it the nodes
-        # even in log(s), the trapezoid rule errs by exp(-2 pi angle nodes), 0.53 rad from the axis: decades/3.4, and a third more
+    if SLOPE * nearest < deep / 2:  # a contour above it would take twice the window, or more
+        # n nodes an e-fold of s, 0.53 rad from the axis, err by exp(-2 pi 0.53 n): n = decades/3.4 would do; a third more is taken
         depth, bend, graded = deep, deep / SLOPE, (nearest / 2, decades / 2.5)
     else:
         depth, bend, graded = min(deep, SLOPE * nearest), extent.branch, (math.inf, 0.0)

@@ -79,7 +79,7 @@ def plan_stretches(extent: Extent, outside: float, rtol: float, noise: float) ->
 SAMPLES, DECADES = 60_000, 3000
 #: Relative imaginary step of derivatives: they are right to STEP^2 = 1e-14, for nothing is subtracted.
 STEP = 1e-7
-#: Derivatives of half the trace below this are rounding: that of T, over STEP, is 1e-9 of parts that are real.
+#: Derivatives of half the trace below this, some 5000 EPS, are rounding of the sum over a cell's layers.
 UNSEEN = 1e-12
 
 

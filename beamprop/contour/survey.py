@@ -54,7 +54,7 @@ def survey(
     with np.errstate(over="ignore", invalid="ignore"):  # is_calm takes what is not finite for singular
         h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
-    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # no part of rtol, but clear of rounding
+    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # well below rtol, but clear of rounding
     sharp = math.inf
     if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
         sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
@@ -143,7 +143,7 @@ def cut_spectra(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float
     ends = ends[(ends > 0) & (ends <= extent.band * (1 + 1e-9))]
     if not ends.size:
         return ends
-    # spectra of edges have zeros: each end is judged by the largest of nine places in the last twentieth before it
+    # spectra of edges have zeros: an end counts by the largest of nine places in the last twentieth before it
     before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
     k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
     size = _strengths(s, checks, k)
