@@ -29,7 +29,7 @@ def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     grid = sums.grid_of(x)
     step = 2 * np.pi / (n * grid.step)
     k = step * np.arange(-20, 60) - 0.3j
-    line = paths.Contour(k, np.ones(k.size), step, -20, 0.3, 1.0)
+    line = paths.Contour(k, np.ones(k.size), step, -20, 0.3)
     h = rng.standard_normal((3, k.size)) + 0j
     right, left = rng.standard_normal((2, k.size)) + 0j
     turn = np.exp(1j * np.outer(k, x))

@@ -36,7 +36,7 @@ def random_sum(rng):
     step = 2 * np.pi / (n * dx)
     k = step * (first + np.arange(size)) - 0.7j
     x = rng.uniform(-1, 0) + dx * np.arange(rng.integers(1, n + 1))
-    line = paths.Contour(k, np.ones(size), step, first, 0.7, 1.0)
+    line = paths.Contour(k, np.ones(size), step, first, 0.7)
     h, right, left = (
         rng.normal(size=s) + 1j * rng.normal(size=s) for s in ((int(rng.integers(1, 90)), size), size, size)
     )

@@ -8,6 +8,7 @@ from closeness import RTOL, close
 import beamprop as bp
 from beamprop import conventions, response
 from beamprop.arrays import exponentials
+from beamprop.contour import sums
 from beamprop.media.values import layer_values
 from beamprop.modes import argument_principle
 from beamprop.response import cell, interior, layer, periods, recursion, reference, sampled_slab
@@ -308,6 +309,32 @@ def test_sums_of_exponentials_by_tables(count, waves, monkeypatch):
     np.testing.assert_allclose(
         found, reference.over_positions(k, weights, x), rtol=0, atol=3e-13 * np.abs(weights).sum()
     )
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-10, 1e-3, 0.2])
+@pytest.mark.parametrize("count", [1, 63, 64, 1001])
+def test_plane_waves_by_tables(count, off):
+    """On even grids, on those that are even to printed digits, and on uneven ones; below the axis too."""
+    rng = np.random.default_rng(count)
+    k = rng.uniform(0, 50, 40) - 0.3j * rng.uniform(0, 1, 40)
+    x = -1.3 + 0.004 * (np.arange(count) + off * rng.uniform(-1, 1, count))
+    forward, backward = reference.plane_waves(k, x)
+    forth, back = sums._phases(k, x, True)
+    rounding = 1e-15 * (1 + np.abs(k).max() * np.abs(x).max())  # of phases, which are sums of two products
+    np.testing.assert_allclose(forth, forward, rtol=rounding)
+    np.testing.assert_allclose(back, backward, rtol=rounding)
+    assert sums._phases(k, x, False)[1] is None
+
+
+@pytest.mark.parametrize("count", [1, 5, 8, 9, 30])
+@pytest.mark.parametrize("first", [-13, -1, 0, 3, 9])
+def test_harmonics_folded_onto_an_fft(first, count):
+    """Bins beyond the harmonics keep what they hold, which is 0."""
+    rng = np.random.default_rng(count)
+    h, amplitude = rng.normal(size=(3, count)) + 0j, rng.normal(size=(2, 1, count)) * 1j
+    out = np.zeros((2, 3, 8), complex)
+    sums._fold(h, amplitude, first, out)
+    np.testing.assert_allclose(out, reference.folded(h * amplitude, first, 8), rtol=0, atol=1e-14)
 
 
 def test_logarithms():

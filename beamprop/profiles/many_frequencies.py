@@ -59,7 +59,7 @@ class PlaneWaves(NamedTuple):
 
 def _both_contours(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves]:
     """The plane waves at the plane, on a contour and on a second one for the error; one response for both."""
-    contours = paths.straight_contour(plan), paths.straight_contour(plan.other())
+    contours = paths.straight_contour(plan), paths.straight_contour(plan.second_plan())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
     h = plane(k)
     right, left = sums.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
