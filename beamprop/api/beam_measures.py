@@ -9,9 +9,11 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..contour.error import uniform_budget
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import measures
+from ..profiles.power import PowerError
 from ..progress import Progress, watched
 from ..response.sampled_slab import sample
 from ..sources.base import Beam, moved_to_origin
@@ -94,14 +96,14 @@ def beam_measures(
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
     memory.check_table(flat.size * flat_angles.size, 280.0)
     table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in measures.Beamlet._fields}
-    worst, worst_power = 0.0, 0.0
+    worst, worst_power = uniform_budget(1, 0.0), PowerError()
     source, origin = moved_to_origin(beam)
     each = [(i, j) for i in range(flat.size) for j in range(flat_angles.size)]
     for i, j in watched(progress, each, "beams"):
         s = sample(slab, float(flat[i]))
         both = measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)
-        for side, (beamlet, error, of_power) in enumerate(both):
-            worst, worst_power = max(worst, error), max(worst_power, of_power)
+        for side, (beamlet, budget, of_power) in enumerate(both):
+            worst, worst_power = worst.worse(budget), max(worst_power, of_power, key=lambda error: error.total)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in PLACES:

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..contour.error import uniform_budget
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import sections
@@ -76,7 +77,7 @@ def beam_width(
     memory.check_table(flat.size * flat_angles.size, 60.0)
     names = sections.Row._fields
     table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
-    most, worst = np.zeros(4, int), 0.0
+    most, worst = np.zeros(4, int), uniform_budget(1, 0.0)
     source, origin = moved_to_origin(beam)
     work = [
         (rows, j)
@@ -85,10 +86,10 @@ def beam_width(
     ]
     for rows, j in watched(progress, work, "widths"):
         s = sample_all(slab, flat[rows])
-        found, met, errors = sections.rows(s, source.at_angle(float(flat_angles[j])), rtol, air_distance)
+        row, met, budget = sections.rows(s, source.at_angle(float(flat_angles[j])), rtol, air_distance)
         most = np.maximum(most, met.max(axis=1).astype(int))
-        worst = max(worst, float(errors.max()))
-        for name, values in found._asdict().items():
+        worst = worst.worse(budget)
+        for name, values in row._asdict().items():
             table[name][rows, j] = values
     table["centroid_out"] += origin
     checks.warn_if_inaccurate(worst, rtol)

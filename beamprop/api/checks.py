@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
+from ..contour.error import ErrorBudget
 from ..media.fluids import Fluid
 from ..media.structures import Slab
+from ..profiles.power import PowerError
 from ..sources.base import Beam, sin_degrees
 
 
 class AccuracyWarning(UserWarning):
-    """An answer whose estimated error is above the asked rtol.
+    """An answer whose estimated error is above the requested rtol.
 
     Examples
     --------
@@ -26,21 +28,19 @@ class AccuracyWarning(UserWarning):
     """
 
 
-def warn_if_inaccurate(
-    error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|", mostly: str = ""
-) -> None:
-    """Warn of an estimated error above rtol; `mostly` names its largest term where it is known."""
-    if error > rtol:
-        term = f", mostly: {mostly}" if mostly else ""
+def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "the largest |p|") -> None:
+    """Warn of an estimated error above rtol, with its largest term."""
+    total = float(np.max(error.total))
+    if total > rtol:
         warnings.warn(
-            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}{term}",
+            f"estimated error {total:.1e} of {of}, above the requested rtol {rtol:.1e}, mostly: {error.largest}",
             AccuracyWarning,
-            stacklevel=stacklevel,
+            stacklevel=3,
         )
 
 
 def angles(angle: Any, beam: Beam) -> np.ndarray:
-    """The asked angles of a beam [degree], its own by default."""
+    """The requested angles of a beam [degree], its own by default."""
     return validate.angles(beam.angle if angle is None else angle)
 
 
@@ -68,7 +68,7 @@ def one_of(**options: Any) -> tuple[str, Any]:
 def lateral(
     name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+    """The requested axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
 
     `bytes_each` is what the answer to one plane wave holds.
     """

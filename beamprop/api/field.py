@@ -13,7 +13,8 @@ from ..fields.question import fill, prepare
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from .field_question import checked_question, labelled, warn_of_field
+from . import checks
+from .field_question import checked_question, labelled
 
 
 def field(
@@ -82,5 +83,5 @@ def field(
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
         budget = fill(prepare(question, i), slice(None), slice(None), p[i])
         errors[i], worst = budget.total, worst.worse(budget)
-    warn_of_field(worst, question.rtol)
+    checks.warn_if_inaccurate(worst, question.rtol)
     return labelled(labels, errors, p)

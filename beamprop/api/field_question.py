@@ -9,7 +9,6 @@ import xarray as xr
 
 from .. import validate
 from ..contour import sums
-from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
@@ -58,11 +57,6 @@ def checked_question(
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, source, flat_f, flat_angles, flat_z, positions - origin, period, rtol)
     return question, Labels(axes, slab, beam, boundary, period, rtol)
-
-
-def warn_of_field(worst: ErrorBudget, rtol: float) -> None:
-    """Warn of the error of a field's worst beam, with its largest term, if it is above rtol."""
-    checks.warn_if_inaccurate(float(worst.total[0]), rtol, stacklevel=4, mostly=worst.largest)
 
 
 def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:

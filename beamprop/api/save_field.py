@@ -18,7 +18,8 @@ from ..media.structures import Slab
 from ..memory import check_field
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from .field_question import checked_question, labelled, warn_of_field
+from . import checks
+from .field_question import checked_question, labelled
 
 #: The largest chunk of a file [bytes].
 CHUNK = 2**24
@@ -113,7 +114,7 @@ def save_field(
     sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
     chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
     save_blocks(path, "p", sizes, chunks, blocks(), lambda: labelled(labels, errors, None))
-    warn_of_field(worst, question.rtol)
+    checks.warn_if_inaccurate(worst, question.rtol)
     return labelled(labels, errors, None)
 
 

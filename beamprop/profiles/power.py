@@ -27,16 +27,37 @@ FINE, COARSE = 24, 17
 SHARE, LEAST, MOST_PANELS = 1e-3, 1e-13, 5_000
 
 
+class PowerError(NamedTuple):
+    """The estimated relative error of a power by its terms."""
+
+    rules: float = 0.0  #: difference of two Gauss rules
+    rounding: float = 0.0  #: change with the last bits of the input
+
+    @property
+    def total(self) -> float:
+        """The sum of all terms."""
+        return sum(self)
+
+    @property
+    def largest(self) -> str:
+        """The largest term in words."""
+        return ("the difference between two quadrature rules", "the rounding of the response")[self.index(max(self))]
+
+    def plus(self, second: PowerError) -> PowerError:
+        """The error of a ratio of two powers."""
+        return PowerError(self.rules + second.rules, self.rounding + second.rounding)
+
+
 class Radiated(NamedTuple):
-    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated relative error."""
+    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated error."""
 
     total: float
     mean: float
     deviation: float
-    error: float
+    error: PowerError
 
 
-NOTHING = Radiated(0.0, math.nan, math.nan, 0.0)
+NOTHING = Radiated(0.0, math.nan, math.nan, PowerError())
 
 
 class _Nodes(NamedTuple):
@@ -96,8 +117,8 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     if not total > 0:
         return NOTHING
     mean = first / total
-    error = (sums.apart[0].sum() + abs(sums.rounding[0].sum())) / total
-    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), float(error))
+    error = PowerError(float(sums.apart[0].sum() / total), float(abs(sums.rounding[0].sum()) / total))
+    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), error)
 
 
 def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
