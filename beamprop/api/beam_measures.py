@@ -43,7 +43,7 @@ def beam_measures(
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
     rtol : float
-        Asked error of the fields over their largest |p|.
+        Requested error of the fields over their largest |p|.
     progress : function
         Wraps the list of (frequency, angle) pairs that is worked through.
     window : float, optional, m

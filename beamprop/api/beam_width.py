@@ -38,7 +38,7 @@ def beam_width(
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
     rtol : float
-        Asked error of the fields over their largest |p|.
+        Requested error of the fields over their largest |p|.
     air_distance : float, m, optional
         Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
     progress : bool or function

@@ -57,8 +57,8 @@ def forward_k0(fluid: Fluid, frequency: np.ndarray, name: str) -> np.ndarray:
     return k.real
 
 
-def one_of(**options: Any) -> tuple[str, Any]:
-    """The one option that is given."""
+def single_option(**options: Any) -> tuple[str, Any]:
+    """The option that is given, by name and value."""
     given = {name: value for name, value in options.items() if value is not None}
     if len(given) != 1:
         raise ValueError(f"expected exactly one of {', '.join(options)}, got {', '.join(given) or 'none'}")

@@ -46,7 +46,7 @@ def field(
     period : float, m
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
-        Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
+        Requested error of the open field over the largest |p| of each plane, wherever on the plane that lies.
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of frequencies that is worked through.
 

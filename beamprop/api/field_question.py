@@ -64,8 +64,8 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
     dims, pick = labels.dims, labels.pick
     variables: dict[str, Any] = {} if p is None else {"p": (dims, p[pick])}
     if labels.boundary == "open":
-        few = tuple(d for d in dims if d in ("frequency", "angle"))
-        variables["error_estimate"] = (few, errors[pick[:2]])
+        by_beam = tuple(d for d in dims if d in ("frequency", "angle"))
+        variables["error_estimate"] = (by_beam, errors[pick[:2]])
     ds = datasets.make(
         variables,
         checks.coords(**labels.axes),

@@ -49,8 +49,8 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
 
     rows = ordered.transpose(..., dim)
     measured = profile_width.of_samples(x, rows.values.reshape(-1, x.size), profile_width.HALF_LEVEL[width_of])
-    one_sample = rows.drop_vars([name for name, c in rows.coords.items() if dim in c.dims]).isel({dim: 0})
-    out = one_sample.copy(data=measured.width.reshape(rows.shape[:-1]))
+    first_sample = rows.drop_vars([name for name, c in rows.coords.items() if dim in c.dims]).isel({dim: 0})
+    out = first_sample.copy(data=measured.width.reshape(rows.shape[:-1]))
     crossings = int(measured.crossings.max(initial=0))
     if np.any(np.isnan(out)):
         warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)

@@ -123,6 +123,6 @@ def _block(shape: tuple[int, ...], memory: float) -> tuple[tuple[int, int], tupl
     _, angles, planes, points = shape
     row = SIZE * points
     many = max(1, min(angles, int(memory // row)))
-    few = max(1, min(planes, int(memory // (row * many))))
-    chunk = max(1, min(few, int(CHUNK // (row * many))))
-    return (many, few // chunk * chunk), (many, chunk)
+    held = max(1, min(planes, int(memory // (row * many))))
+    chunk = max(1, min(held, int(CHUNK // (row * many))))
+    return (many, held // chunk * chunk), (many, chunk)

@@ -52,9 +52,12 @@ def beam_sum(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray, 
     return out[0]
 
 
-#: Up to so many planes, sums by tables take less than exponentials that all planes share.
-TABLE_PLANES = 4
-#: From so many planes on, a matrix product of each beam is as fast as that of all beams together, whose operand it spares.
+# The constants of this file are measured again by experiments/benchmarks/constants.py.
+
+#: Up to so many planes of one beam, sums by tables take less (to a third) than exponentials that all planes share.
+TABLE_PLANES = 16
+#: Up to so many planes, all beams share exponentials in one product, whose operand is h times the number of beams; with more planes
+#: that would be large, and exponentials are a small part of a product.
 PLANES_OF_A_BEAM = 64
 
 
@@ -62,6 +65,7 @@ def fill(waves: Superposition, h: np.ndarray, out: np.ndarray) -> None:
     """p(z, x) of all requested beams into out (A, Z, X), of which (Z, X) must be contiguous; h is (Z, n)."""
     sources, contour, n = waves.sources, waves.quadrature.contour, waves.quadrature.fft
     (right, left), x = waves.amplitudes, waves.off_centre
+    single_beam = len(right) == 1
     grid = sums.grid_of(x) if n and fft_is_cheaper(n, contour.k.size, x.size) else None
     if sources.weights is not None:
         summed = (
@@ -75,12 +79,16 @@ def fill(waves: Superposition, h: np.ndarray, out: np.ndarray) -> None:
     if grid is not None:
         for a, b, into in zip(right, left, out, strict=True):
             sums.grid_sum(contour, h, a, b, grid, n, into)
-    elif h.shape[0] <= TABLE_PLANES and x.size >= exponentials.MANY and (step := exponentials.even_step(x)):
-        for a, b, into in zip(right, left, out, strict=True):
-            into[...] = exponentials.over_waves(contour.k, a * h, float(x[0]), step, x.size)
-            if np.any(b):
-                into += exponentials.over_waves(-contour.k, b * h, float(x[0]), step, x.size)
-    elif len(right) == 1 or h.shape[0] > PLANES_OF_A_BEAM:
+    elif (
+        single_beam
+        and h.shape[0] <= TABLE_PLANES
+        and x.size >= exponentials.MANY
+        and (step := exponentials.even_step(x))
+    ):
+        out[0] = exponentials.over_waves(contour.k, right * h, float(x[0]), step, x.size)
+        if np.any(left):
+            out[0] += exponentials.over_waves(-contour.k, left * h, float(x[0]), step, x.size)
+    elif single_beam or h.shape[0] > PLANES_OF_A_BEAM:
         for a, b, into in zip(right, left, out, strict=True):
             into[...] = sums.direct_sum(contour, h, a, b, x)
     else:
@@ -97,12 +105,15 @@ def _check_finite(p: np.ndarray) -> None:
         )
 
 
-#: From how many planes and positions on a map is made from rows of low rank, and how many planes at a time.
+#: A map is made from rows of low rank from so many planes on (of which at most half may be searched) and so many positions (with fewer,
+#: the response of the planes takes longer than their sums), so many planes at a time: (2048, n) of h at the chosen columns.
 MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
-#: Among how many planes the rows are chosen, and in each medium at least; how many rows may be chosen; and on how many further
-#: planes in each medium the result is compared with their own sums.
+#: Among how many planes the rows are chosen, and in each medium at least: about twice and once as many as may be chosen, which is a
+#: quarter of the fewest planes, since sums of more would save little; and on how many further planes in each medium the result is
+#: compared with their own sums.
 SEARCHED, IN_EACH, MOST_ROWS, COMPARED = 90, 40, 48, 5
-#: The worst of all planes may err by so many times the worst of those that are compared.
+#: The worst of all planes may err by so many times the worst of those that are compared: experiments/accuracy.py counts the estimates
+#: below a third of the error, its maps of 250 planes and more apart.
 UNSEEN = 5
 
 

@@ -81,7 +81,7 @@ def full_width(
 
 
 def of_samples(x: np.ndarray, p: np.ndarray, level: float = 0.5) -> Width:
-    """`full_width` of profiles (R, n) that are known by samples alone, some of them at a time."""
+    """`full_width` of profiles (R, n) that are known by samples alone, in blocks."""
     rows = max(1, MOST_SAMPLES // x.size)
     parts = [full_width(x, p[start : start + rows], level) for start in range(0, max(1, len(p)), rows)]
     return Width(*(np.concatenate(values) for values in zip(*parts, strict=True)))
@@ -192,10 +192,8 @@ def _edges(
         fine = _between(inner, outer, subsamples)
         looked = np.abs(evaluate(fine.reshape(*fine.shape[:-2], -1))).reshape(fine.shape)
         excess = np.nan_to_num(looked - target[..., None], nan=0.0)
-        excess[..., 0], excess[..., -1] = (
-            above,
-            under,
-        )  # these are known: the search must not miss the crossing by rounding
+        # both ends are known: the search must not miss the crossing by rounding
+        excess[..., 0], excess[..., -1] = above, under
         first = np.maximum(np.argmax(excess < 0, axis=-1), 1)
         inner, outer = _pick(fine, first - 1), _pick(fine, first)
         above, under = _pick(excess, first - 1), _pick(excess, first)

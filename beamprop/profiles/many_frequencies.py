@@ -75,7 +75,7 @@ def _plan(
 
 
 #: The most plane waves of all frequencies that are worked on at a time, and of one of them.
-MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
+MOST_TOGETHER, MOST_OF_A_FREQUENCY = 2**18, 20_000
 #: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
 ROUND = 0.25
 
@@ -95,12 +95,12 @@ def measured_together(route: Route, beam: Beam, rtol: float, level: float) -> tu
     middle, half = landing(s, beam, plane, route.path)
     plan = _plan(s, beam, route.path, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
-    if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
+    if count > 1 and count * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER:
         (low, good_low), (high, good_high) = (
             measured_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)
         )
         return measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high])
-    if size >= MOST_OF_ONE:
+    if size >= MOST_OF_A_FREQUENCY:
         return nothing
     first, second = _both_contours(s, beam, plane, plan)
     measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)

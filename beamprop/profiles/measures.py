@@ -142,7 +142,7 @@ def _samples(s: SampledSlab, beam: Beam, half: float) -> int:
 def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float, slice]:
     """Centroid and standard deviation of |p|^2, and where they are taken.
 
-    That is where |p| is connected to the peak above the tail, or the `whole` window if asked for or if the tail is cut off.
+    That is where |p| is connected to the peak above the tail, or the `whole` window if requested or if the tail is cut off.
     """
     top = int(np.argmax(size))
     below = np.flatnonzero(size < TAIL * size[top])

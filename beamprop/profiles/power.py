@@ -22,7 +22,7 @@ Density = Callable[[np.ndarray], np.ndarray]
 
 #: Nodes of both rules on a panel.
 FINE, COARSE = 24, 17
-#: Panels are halved until the two rules differ by this share of the asked accuracy, since tails show less than what they are of;
+#: Panels are halved until the two rules differ by this share of the requested accuracy, since tails show less than what they are of;
 #: the least it may be, what rounding leaves of a sum; and the most panels there may be.
 SHARE, LEAST, MOST_PANELS = 1e-3, 1e-13, 5_000
 
@@ -122,7 +122,7 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
 
 
 def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
-    """Nodes on panels that are parts of i < i + u < i + 1, which stands for alpha between edges i and i + 1.
+    """Nodes on panels that are parts of i < i + u < i + 1, which maps to alpha between edges i and i + 1.
 
     Next to branch points alpha goes as u^2, which takes out their square roots.
     """

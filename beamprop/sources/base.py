@@ -27,7 +27,7 @@ class Beam(Protocol):
 
     * ``spectra(kx, k0, sines)``: S at kx (n,) of the same source at angles of given sines (B,), as an array (B, n).
     * ``shifts_smoothly(tolerance)``: whether S is an entire function of sin(angle) but for `tolerance` of its largest value, so
-      that fields at many angles may be interpolated from a few.
+      that fields at many angles may be interpolated from those at fewer.
     * ``moved_to_origin()``: the same source about x = 0; without it, a source stays where it is.
     * ``spectrum_ends(k0)``: the interval of kx at whose ends the spectrum is cut off, whatever its value there.
     * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`.
@@ -57,7 +57,7 @@ class Beam(Protocol):
         """p(x, z0) [Pa] at x [m], shaped like x."""
 
     def reach(self, tolerance: float) -> float:
-        """Distance from the centre beyond which |p| stays below tolerance times its largest value [m]."""
+        """Half width of the launch profile above a level: beyond, |p| is below tolerance times its largest value [m]."""
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
         """Interval of real kx outside which |S| is below tolerance times its largest value [rad/m]."""

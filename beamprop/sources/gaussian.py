@@ -103,7 +103,7 @@ class GaussianBeam(Tilted):
         return np.exp(-((xi * cosine / self.radius) ** 2) + 1j * k0 * float(sin_degrees(self.angle)) * xi)
 
     def reach(self, tolerance: float) -> float:
-        """a sqrt(ln(1/tolerance)), divided by cos(angle) for the rotated form [m]."""
+        """Half width of |p| above `tolerance`: a sqrt(ln(1/tolerance)), divided by cos(angle) for the rotated form [m]."""
         cosine = 1.0 if self.form == "launch" else math.cos(math.radians(self.angle))
         return self.radius * math.sqrt(math.log(1 / tolerance)) / cosine
 

@@ -111,8 +111,8 @@ class Profile(Tilted):
             )
         return cls(profile["x"].values, profile.values, z0, angle)
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Profile) and self._key() == other._key()
+    def __eq__(self, value: object) -> bool:
+        return isinstance(value, Profile) and self._key() == value._key()
 
     def __hash__(self) -> int:
         return hash(self._key())
@@ -184,7 +184,7 @@ class Profile(Tilted):
         return p.reshape(x.shape) * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
 
     def reach(self, tolerance: float) -> float:
-        """Half the sampled interval [m]."""
+        """Half width of the launch profile, whatever the level: half the sampled interval, and a sample [m]."""
         return float(self.x[-1] - self.x[0]) / 2 + self.spacing
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:

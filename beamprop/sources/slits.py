@@ -69,7 +69,7 @@ class Slits(Tilted):
         return inside * np.exp(1j * k0 * float(sin_degrees(self.angle)) * x)
 
     def reach(self, tolerance: float) -> float:
-        """Half of the distance between the outermost edges [m]."""
+        """Half width of the launch profile, whatever the level: to the outermost edges [m]."""
         return float(self.positions[-1]) + self.width / 2
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
