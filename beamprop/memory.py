@@ -17,7 +17,7 @@ from pathlib import Path
 COMPLEX = 16
 #: Whatever is smaller than this is not worth asking the system what is free.
 SMALL = 2**26
-#: Where the system does not say what is free.
+#: Where the system does not say what is free: 8 GB.
 UNKNOWN = 2.0**33
 VARIABLE = "BEAMPROP_MEMORY"
 PREFIXES = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}

@@ -21,7 +21,7 @@ from ..sources.base import Beam
 from . import checks
 from .field_question import checked_question, labelled
 
-#: The largest chunk of a file [bytes].
+#: The largest chunk of a file [bytes]: 16 MB, what a reader holds for one value of it, and what compresses at a time.
 CHUNK = 2**24
 #: Of a complex number [bytes].
 SIZE = 16

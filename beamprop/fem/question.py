@@ -20,8 +20,9 @@ from .task import Plan, Task, make_task, predict, wavenumber
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Field over incident field of an order above which a warning names a guided mode. Near 1 away from them; 290
-#: went with an error of 3e-4 and 4000 with one of 5e-2 (order 3, lossless, 20 periods of the paper's cell).
+#: Field over incident field of an order above which a warning names a guided mode. Near 1 away from them; 290 went with an error
+#: of 3e-4 and 4000 with one of 5e-2 (order 3, lossless, 20 periods of the paper's cell): it grows as the square, and leaves below
+#: this what `SIZE_OVER_WAVELENGTH` promises.
 GUIDED_GAIN = 300.0
 
 

@@ -17,7 +17,7 @@ from . import boundary, solvers, strip
 #: An order this share of the mesh's highest or lower is resolved as well as the errors of
 #: `SIZE_OVER_WAVELENGTH` ask.
 RESOLVED_SHARE = 1 / 4
-#: Finest default elements over those for the wavelength in front, whatever the beam's band.
+#: Finest default elements over those for the wavelength in front, whatever the beam's band: twice as many unknowns take eight times as long.
 FINEST = 2
 
 

@@ -23,7 +23,7 @@ from .fwhm import Evaluate, full_width
 from .routes import Measures, Route, measures_of
 from .windows import EDGE
 
-#: Exponentials on an even contour are products of two small tables, this many steps apart.
+#: Exponentials on an even contour are products of two tables of n/STEP and STEP entries: fewest for sqrt(n), of some 150 nodes.
 STEP = 12
 
 
@@ -68,15 +68,17 @@ def _both_contours(
 def _plan(
     s: SampledSlab, beam: Beam, path: np.ndarray, middle: np.ndarray, half: np.ndarray, rtol: float
 ) -> StraightPlan:
-    lo, hi = beam.band(s.k0, rtol * 1e-2)
+    lo, hi = beam.band(s.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
     farthest = np.abs(middle - beam.centre) + half
     extent = Extent(s.k0, s.nearest_branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), path)
     return paths.plan_straight(extent, rtol)
 
 
-#: The most plane waves of all frequencies that are worked on at a time, and of one of them.
+#: The most plane waves of all frequencies at a time (an array of them takes 4 MB), and of a single frequency: beyond, a bent contour,
+#: measured by itself, takes fewer (experiments/benchmarks/constants.py).
 MOST_TOGETHER, MOST_OF_A_FREQUENCY = 2**18, 20_000
-#: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
+#: Poles nearer to kx = 0 than this share of delta count about half on either side of a straight contour, whatever its delta: the share
+#: chi = erfc(-k/delta)/2 of the contour for waves to the right is 0.36 to 0.64 there.
 ROUND = 0.25
 
 

@@ -21,10 +21,12 @@ from .power import NOTHING, PowerError, Radiated
 from .windows import Windows, ends_over_peak, widened
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
+#: A Gaussian beam loses 4e-4 of its second moment by it, 2e-4 of its width.
 TAIL = 0.01
-#: So often the window is doubled to get there; guided waves of a lossless slab run along for ever.
+#: So often the window is doubled to get there, to 64 times the first; guided waves of a lossless slab run along for ever.
 DOUBLINGS = 6
-#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
+#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends, where the error of
+#: Simpson's rule falls with the fourth power of the spacing, to 2e-4 of what the needed samples leave.
 FINER = 8
 
 
@@ -110,7 +112,7 @@ def _measure(s: SampledSlab, beam: Beam, side: Side, launched: Radiated, rtol: f
     return beamlet, profile.quadrature.budget, radiated.error.plus(launched.error)
 
 
-#: What is said of a side without a beam.
+#: The measures of a side without a beam.
 _NAN = math.nan
 NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
 

@@ -18,7 +18,7 @@ from .fwhm import centroid, full_width
 from .routes import Measures
 from .windows import EDGE, Windows, ends_over_peak, widened
 
-#: So many windows are tried, each twice as wide as the one before.
+#: So many windows are tried, each twice as wide as the one before: to 256 times the first.
 WINDOWS = 9
 
 
@@ -70,7 +70,7 @@ class _Rim(NamedTuple):
 
 
 #: A guided wave is what still has this share of its |p| in the outer tenths of a window that is twice as wide: a beam in open space
-#: falls to 0.7 of it or less. The peak is the same one if it is within this share. And in so many windows more a wave without loss
+#: falls as 1/sqrt(distance), to 0.7 of it, or faster. The peak is the same one if it is within this share. And in so many windows more a wave without loss
 #: that lies above the level on one side is looked at before the width is said to have no end there.
 UNDIMINISHED, SAME, MORE = 0.9, 0.02, 3
 

@@ -20,7 +20,7 @@ from ..contour.paths import slow_ends
 #: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx, and the response h weighted by what was launched: (3, n).
 Density = Callable[[np.ndarray], np.ndarray]
 
-#: Nodes of both rules on a panel.
+#: Nodes of both rules on a panel (experiments/benchmarks/constants.py: fewer or more take about the same time).
 FINE, COARSE = 24, 17
 #: Panels are halved until the two rules differ by this share of the requested accuracy, since tails show less than what they are of;
 #: the least it may be, what rounding leaves of a sum; and the most panels there may be.

@@ -119,6 +119,10 @@ class Tilted:
         return replace(self, angle=angle)  # type: ignore[type-var]
 
 
+#: Exponentials that are held at a time: 32 MB.
+BLOCK = 2_000_000
+
+
 def spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """sum_j weights_j exp(-i k x_j), shaped like k and then like weights_j, in blocks of bounded memory."""
     k = np.asarray(k)
@@ -127,7 +131,7 @@ def spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarra
         summed = exponentials.over_positions(k.ravel(), weights.reshape(x.size, -1), float(x[0]), step)
         return summed.reshape(*k.shape, *weights.shape[1:])
     out = np.empty((k.size, *weights.shape[1:]), complex)
-    block = max(1, 2_000_000 // max(1, x.size))
+    block = max(1, BLOCK // max(1, x.size))
     flat = k.ravel()
     for start in range(0, k.size, block):
         out[start : start + block] = np.exp(-1j * np.multiply.outer(flat[start : start + block], x)) @ weights

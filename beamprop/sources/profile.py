@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
-from .base import Tilted, checked_launch, sin_degrees, spectral_sum
+from .base import BLOCK, Tilted, checked_launch, sin_degrees, spectral_sum
 from .columns import read_columns
+
+#: Steps that differ by less than this share are even: printed positions are known to some six digits.
+EVEN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +63,7 @@ class Profile(Tilted):
         if not np.any(p):
             raise ValueError("p: expected a profile that is not zero everywhere")
         steps = np.diff(x)
-        if np.ptp(steps) > 1e-6 * steps.min():
+        if np.ptp(steps) > EVEN * steps.min():
             from scipy.interpolate import CubicSpline
 
             count = float((x[-1] - x[0]) / steps.min()) + 1
@@ -177,7 +180,7 @@ class Profile(Tilted):
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""
         x = np.asarray(x, dtype=float)
         p, flat = np.empty(x.size, complex), x.ravel()
-        block = max(1, 2_000_000 // self.x.size)
+        block = max(1, BLOCK // self.x.size)
         for start in range(0, x.size, block):
             part = slice(start, start + block)
             p[part] = np.sinc((flat[part, None] - self.x) / self.spacing) @ self.p

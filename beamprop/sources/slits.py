@@ -52,7 +52,7 @@ class Slits(Tilted):
 
     def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
         half = np.asarray(k) * self.width / 2
-        small = np.abs(half) < 1e-4
+        small = np.abs(half) < 1e-4  # half^4/120, the next term of the series, is below 1e-18
         safe = np.where(small, 1.0, half)
         sinc = np.where(small, 1 - half**2 / 6, np.sin(safe) / safe)
         return self.width * sinc * spectral_sum(k, self.positions, np.ones(self.count))
