@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from ..contour.error import ErrorBudget
 from ..media.fluids import Fluid
 from ..media.structures import Slab
 from ..profiles.power import PowerError
-from ..sources.base import Beam, sin_degrees
+from ..sources.base import Beam, moved_to_origin, sin_degrees
 
 
 class AccuracyWarning(UserWarning):
@@ -39,9 +39,33 @@ def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "
         )
 
 
-def angles(angle: Any, beam: Beam) -> np.ndarray:
-    """The requested angles of a beam [degree], its own by default."""
-    return validate.angles(beam.angle if angle is None else angle)
+class Beams(NamedTuple):
+    """What questions about beams share: checked arguments, axes as they were given (scalars stay scalars)."""
+
+    frequency: np.ndarray  #: Hz
+    angle: np.ndarray  #: degree, the beam's own by default
+    rtol: float
+    source: Beam  #: the beam, moved to the origin
+    origin: float  #: its place before [m]
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """frequency and angle."""
+        return {"frequency": self.frequency, "angle": self.angle}
+
+    @property
+    def flat(self) -> tuple[np.ndarray, np.ndarray]:
+        """frequency (F,) and angle (A,)."""
+        return np.atleast_1d(self.frequency), np.atleast_1d(self.angle)
+
+
+def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
+    """The arguments of a question about beams, or a ValueError that names the wrong one."""
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles = validate.angles(beam.angle if angle is None else angle)
+    return Beams(f, angles, validate.rtol(rtol), *moved_to_origin(beam))
 
 
 def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:
