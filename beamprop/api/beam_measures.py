@@ -108,6 +108,7 @@ def beam_measures(
     checks.warn_if_inaccurate(worst, beams.rtol)
     checks.warn_if_inaccurate(worst_power, beams.rtol, of="a power")
     _warn_of_windows(table, window is not None)
+    checks.warn_of_crossings(int(table["crossings"].max()))
     dims, pick = checks.dims(**beams.axes)
     coords = checks.coords(**beams.axes) | {"side": (("side",), list(SIDES))}
     variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
@@ -128,13 +129,6 @@ def _warn_of_windows(table: dict[str, np.ndarray], chosen: bool) -> None:
         warnings.warn(
             f"|p| falls to {rim:.2g} of its peak only, in the widest window tried: centroid, lateral_shift and second moment "
             "are those of moments_from to moments_to; choose a window",
-            RuntimeWarning,
-            stacklevel=3,
-        )
-    most = int(table["crossings"].max())
-    if most > 2:
-        warnings.warn(
-            f"the half level is met up to {most} times; widths are between the two places nearest to the peak",
             RuntimeWarning,
             stacklevel=3,
         )

@@ -93,14 +93,8 @@ def beam_width(
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
-    if np.any(most > 2):
-        many = ", ".join(name for name, times in zip(names, most, strict=False) if times > 2)
-        warnings.warn(
-            f"the half level is met up to {most.max()} times; the widths are between the two places nearest to the peak: "
-            f"{many}",
-            RuntimeWarning,
-            stacklevel=2,
-        )
+    many = (name for name, times in zip(names, most, strict=False) if times > 2)
+    checks.warn_of_crossings(int(most.max()), ", ".join(many))
     dims, pick = checks.dims(**beams.axes)
     return datasets.make(
         {n: (dims, v[pick]) for n, v in table.items()},

@@ -120,6 +120,17 @@ def coords(**axes: np.ndarray) -> dict[str, tuple[tuple[str, ...], Any]]:
     return {n: ((n,) if a.ndim else (), a) for n, a in axes.items()}
 
 
+def warn_of_crossings(most: int, names: str = "") -> None:
+    """Warn where |p| crosses the half level more than twice: which of its places a width lies between."""
+    if most > 2:
+        where = f": {names}" if names else ""
+        warnings.warn(
+            f"the half level is met up to {most} times; widths are between the two places nearest to the peak{where}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
 #: Relative errors of plane waves from which on a warning is due: six digits, more than media are known to.
 WORTH_A_WARNING = 1e-6
 

@@ -66,14 +66,6 @@ class Beam(Protocol):
         """The same source sent off at another angle [degree]."""
 
 
-def checked_launch(angle: Any, z0: Any) -> tuple[float, float]:
-    """Angle [degree] and launch plane [m] of a source, or the error that says what is wrong with them."""
-    angle, z0 = validate.angle(angle), as_number(z0, "z0")
-    if z0 > 0:
-        raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {z0!r}")
-    return angle, z0
-
-
 def moved_to_origin(beam: Beam) -> tuple[Beam, float]:
     """The same source about x = 0, and how far it was moved [m].
 
@@ -99,12 +91,23 @@ class Tilted:
     z0: float
     entire = True
 
+    def _check_launch(self) -> None:
+        """Angle and launch plane as numbers, or the error that says what is wrong with them."""
+        object.__setattr__(self, "angle", validate.angle(self.angle))
+        object.__setattr__(self, "z0", as_number(self.z0, "z0"))
+        if self.z0 > 0:
+            raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {self.z0!r}")
+
+    def _tilt(self, k0: float) -> float:
+        """kx of the source's direction, k0 sin(angle) [rad/m]."""
+        return k0 * float(sin_degrees(self.angle))
+
     def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
         raise NotImplementedError
 
     def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx), the envelope's spectrum shifted by k0 sin(angle)."""
-        return self._envelope_spectrum(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
+        return self._envelope_spectrum(np.asarray(kx) - self._tilt(k0))
 
     def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
         """S(kx) at angles of given sines (B,), if the source is entire: (B, n) for kx (n,)."""
