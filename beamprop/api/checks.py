@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import memory, validate
-from ..contour.error import ErrorBudget
 from ..media.fluids import Fluid
 from ..media.structures import Slab
-from ..profiles.power import PowerError
 from ..sources.base import Beam, moved_to_origin, sin_degrees
+
+if TYPE_CHECKING:
+    from ..contour.error import ErrorBudget
+    from ..profiles.power import PowerError
 
 
 class AccuracyWarning(UserWarning):
