@@ -97,6 +97,18 @@ def test_a_plane_whose_third_coordinate_is_noise(tmp_path, version, normal, size
     assert normal not in (ds.x.attrs["file_coordinate"], ds.z.attrs["file_coordinate"])
 
 
+def test_sections_of_a_plane_whose_third_coordinate_is_noise(tmp_path, version):
+    nodes, triangles = mesh()
+    noise = np.random.default_rng(0).uniform(-1, 1, len(nodes)) * 1e-17
+    turned = np.stack([noise, nodes[:, 0], nodes[:, 1]], axis=-1)
+    p = np.conj(wave(*nodes.T))
+    path = writer.sectionwise(tmp_path / "a", turned, triangles, [("p (Pa)", p)], counted=True, version=version)
+    ds = read_comsol(path)
+    assert (ds.x.attrs["file_coordinate"], ds.z.attrs["file_coordinate"]) == ("y", "z")
+    np.testing.assert_array_equal(ds.p, wave(ds.x, ds.z))
+    assert ds.sizes["node"] == 40
+
+
 @pytest.mark.parametrize("along", ["x", "z"])
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_a_line_whose_other_coordinates_are_noise(tmp_path, version, along, dimension):
@@ -119,6 +131,8 @@ def test_a_sweep_over_what_is_no_place(tmp_path, version, style):
     columns = [("freq (Hz)", MODES), ("abs(acpr.p_t) (Pa)", 2 * MODES)]
     path = writer.spreadsheet(tmp_path / "a", {"k1 (rad/m)": K1}, columns, style=style, unit="mm", version=version)
     path.write_text(path.read_text().replace(writer.real(500.0), "0.5"))  # k1 is no length: the writer took it for one
+    chosen = read_comsol(path, expression="abs(acpr.p_t)")
+    np.testing.assert_array_equal(chosen.p, 2 * MODES)
     ds = read_comsol(path)
     assert dict(ds.sizes) == {"row": 4}
     for name, values, unit in (("k1", K1, "rad/m"), ("freq", MODES, "Hz"), ("abs_p_t", 2 * MODES, "Pa")):
@@ -233,3 +247,34 @@ def test_a_cut_line_in_its_own_coordinate_is_a_line(tmp_path):
     ds = read_comsol(writer.spreadsheet(tmp_path / "a", {"cln1x": X}, [("p (Pa)", np.conj(wave(X, 0.0)))]))
     np.testing.assert_array_equal(ds.p, wave(X, 0.0))
     np.testing.assert_array_equal(ds.x, X)
+
+
+@pytest.mark.parametrize("table", [True, False])
+def test_curves_of_one_name_and_legends_in_prose(tmp_path, table):
+    """Both curves stay, under names that differ; a legend may end with a comma, as those of plots do."""
+    text = "% Table: T\n" if table else "% Dimension: 1\n% Nodes: 2\n% Description: Global\n"
+    path = tmp_path / "a.txt"
+    path.write_text(
+        text
+        + "% freq (Hz)             Absorption, total       Absorption, total       \\sigma_b, \n80 1 2 3\n90 4 5 6\n"
+    )
+    ds = read_comsol(path)
+    for name, values in (
+        ("freq", [80, 90]),
+        ("Absorption_total", [1, 4]),
+        ("Absorption_total_2", [2, 5]),
+        ("sigma_b", [3, 6]),
+    ):
+        np.testing.assert_array_equal(ds[name], values)
+
+
+def test_particles_by_number(tmp_path):
+    """Rows by an index, with columns x of their own at each time: 'x' is a variable here, in the file's unit."""
+    path = tmp_path / "a.csv"
+    path.write_text(
+        "% Dimension,1\n% Index,x (mm) @ t=0,p (Pa) @ t=0,x (mm) @ t=0.5,p (Pa) @ t=0.5\n1,-3,1,-2,1.5\n2,NaN,NaN,4,5\n"
+    )
+    ds = read_comsol(path)
+    np.testing.assert_array_equal(ds.x, [[-3, np.nan], [-2, 4]])
+    assert ds.x.dims == ds.p.dims == ("time", "row")
+    assert ds.x.attrs["units"] == "mm"

@@ -73,8 +73,8 @@ def compare(
     Points that are NaN in either field are left out.
 
     Nodes of a mesh: the field of ours is not interpolated but evaluated there, from the slab, the beam and the rtol that its
-    dataset records, at the cost of (nodes) x (plane waves, some hundreds): 10 000 nodes take a third of a second. Two meshes, or
-    a mesh and a field that `field` did not make, are brought onto one grid with `to_grid`.
+    dataset records. N nodes cost N times the plane waves of the field (hundreds to thousands) in exponentials, in blocks of bounded
+    memory. Two meshes, or a mesh and a field that `field` did not make, are brought onto one grid with `to_grid`.
 
     Examples
     --------

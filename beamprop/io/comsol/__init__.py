@@ -66,7 +66,7 @@ def read_comsol(
         units; dims (frequency, angle, other parameters, z, x). A parameter with one value is a scalar coordinate.
         Points that form no grid have the dim `node`, with coordinates x(node) and z(node): see `to_grid`, and `compare`.
         Rows that are no points have the dim `row` and no coordinates, each column a variable in the file's unit: tables
-        (``% Table``), plots of curves (``R, Height``), sweeps (``k1, ...``). x=, z= or expression= make a line of such a plot.
+        (``% Table``), plots of curves (``R, Height``), sweeps (``k1, ...``). x= or z= makes a line of them.
 
     Raises
     ------
@@ -95,8 +95,8 @@ def read_comsol(
     factor = length_factor(source, length_unit)
     kinds = [m[1].lower() for _, text in source.header if (m := SECTION.fullmatch(text))]
     reader = READERS.get(kinds[0] if kinds else "")
-    placed = any(name is not None for name in (x, z, expression))
-    table = reader(source, factor) if reader else read_spreadsheet(source, factor, placed)
+    placed = x is not None or z is not None
+    table = reader(source, factor) if reader else read_spreadsheet(source, factor, placed, expression)
     if table.coordinates and length_unit is None and source.meta.get("length unit", "null") in ("", "null"):
         warnings.warn(
             f"{path}: states no unit of length, metres taken (length_unit= or --length-unit says otherwise)",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
+from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -40,8 +41,8 @@ class Table:
     scattered: dict[str, tuple[np.ndarray, str]] = field(default_factory=dict)  # parameters that are columns
 
 
-def read_spreadsheet(source: Source, factor: float, placed: bool = True) -> Table:
-    """Rows of coordinates and values below a line of names; `placed` holds a line's first column for a place whatever its name."""
+def read_spreadsheet(source: Source, factor: float, placed: bool, expression: str | None) -> Table:
+    """Rows of coordinates and values below a line of names; `placed` says that the first of a line's columns is a place."""
     lines = source.body
     for n, text in lines:
         if text.startswith("%"):
@@ -54,11 +55,11 @@ def read_spreadsheet(source: Source, factor: float, placed: bool = True) -> Tabl
     columns = [(parse_title if "table" in source.meta else parse_column)(source, line, name) for name in names]
     values = [to_numbers(source, numbers, list(cells)) for cells in zip(*rows, strict=True)]
     if "table" in source.meta or source.meta.get("dimension") == "0":
-        return Table(source, {}, columns, values)
+        return Table(source, {}, _told_apart(columns), values)
     dimension = _count_coordinates(source, line, columns)
     _check_expressions(source, len(columns), dimension)
-    if dimension == 1 and not placed and not _is_line(columns):
-        return Table(source, {}, _with_length_unit(source, columns), values)
+    if dimension == 1 and not placed and not _is_line(columns, expression):
+        return Table(source, {}, _told_apart(_with_length_unit(source, columns)), values)
     table = Table(source, {}, [], [])
     for k, (column, value) in enumerate(zip(columns, values, strict=True)):
         if k < dimension:
@@ -78,10 +79,11 @@ def _header_names(source: Source, delimiter: str, width: int) -> tuple[int, list
     line, text = source.header[-1] if source.header else (None, "")
     if line is None or not text or META_LINE.fullmatch(text):
         source.refuse(line, "a line that names the columns above the numbers", short(text) if text else "none")
-    if "table" in source.meta and len(names := re.split(r"\s{2,}|\t", text)) == width:
-        return line, [name.strip('"') for name in names]  # names of tables are prose, in columns
-    for trial in (delimiter, *(d for d in (",", ";", " ") if d != delimiter)):
-        names = column_names(text, trial)
+    splits = [column_names(text, d) for d in (delimiter, *(d for d in (",", ";", " ") if d != delimiter))]
+    prose = [
+        name.strip('"') for name in re.split(r"\s{2,}|\t", text)
+    ]  # titles of tables and legends of plots, in columns
+    for names in [prose, *splits] if "table" in source.meta else [*splits, prose]:
         if len(names) == width:
             return line, names
     count = len(column_names(text, delimiter))
@@ -101,11 +103,27 @@ def _count_coordinates(source: Source, line: int, columns: list[Column]) -> int:
     return count
 
 
-def _is_line(columns: list[Column]) -> bool:
-    """Whether the rows of a one-dimensional file are points of a line: plots of curves are none, nor sweeps of a parameter."""
+def _is_line(columns: list[Column], expression: str | None) -> bool:
+    """Whether the rows of a one-dimensional file are points of a line.
+
+    Sweeps of a parameter are none, nor curves of a plot, unless one is the `expression` to be read.
+    """
     first = columns[0]
     place = plain_unit(first.unit) in LENGTHS if first.unit else _PLACE.fullmatch(first.expression)
-    return bool(place) and all(column.expression != _CURVE for column in columns)
+    curves = any(c.expression == _CURVE for c in columns) or _told_apart(columns) != columns
+    return bool(place) and (expression is not None or not curves)
+
+
+def _told_apart(columns: list[Column]) -> list[Column]:
+    """Columns of one name, as the curves of a plot have, with numbers: 'p', 'p (2)'."""
+    seen: Counter[str] = Counter()
+    out = []
+    for column in columns:
+        name = column.expression
+        seen[name] += not column.parameters
+        again = seen[name] > 1 and not column.parameters
+        out.append(replace(column, expression=f"{name} ({seen[name]})") if again else column)
+    return out
 
 
 def _with_length_unit(source: Source, columns: list[Column]) -> list[Column]:
