@@ -135,6 +135,18 @@ def test_a_saved_field_is_evaluated_too(tmp_path, ours, mesh):
     xr.testing.assert_identical(bp.load(tmp_path / "c.nc").p_b, c.p_b)
 
 
+def test_a_field_of_few_digits_is_evaluated_with_all(ours, mesh):
+    """A file that keeps two digits states so; one that does not is refused as changed."""
+    at, _, p = mesh
+    step = 0.01 * float(np.abs(ours.p).max())
+    rounded = ours.assign(p=((ours.p.real / step).round() * step + 1j * (ours.p.imag / step).round() * step))
+    rounded.p.attrs = ours.p.attrs | {"rounding_error": step / 2}
+    assert float(bp.compare(rounded, dataset(at, p)).relative_l2) < 1e-9
+    del rounded.p.attrs["rounding_error"]
+    with pytest.raises(ValueError, match="expected p as its provenance records it"):
+        bp.compare(rounded, dataset(at, p))
+
+
 def test_periodic_fields_are_evaluated_with_their_period(mesh):
     at, _, _ = mesh
     slab = bp.Slab(bp.lmmd_cell(), 30)

@@ -18,10 +18,13 @@ from ..io import datasets
 from ..sources.base import Beam
 from .grid import SAME_POSITION, matched, pressure_of
 
-#: How far p may be from what its dataset records, over its largest |p|: files may keep four digits of it.
+#: How far p may be from what its dataset records, over its largest |p|, beside the errors that it states: a field that was scaled or
+#: moved by less than this makes no difference that a comparison of two programs would notice.
 AS_RECORDED = 1e-4
 #: Positions along x and z at which that is looked at.
 LOOKED_AT = 5
+#: What the record of a field has to hold.
+NEEDED = {"slab", "beam", "boundary", "period", "rtol"}
 HOW = "bring the nodes onto a grid with to_grid (the command's --grid)"
 
 
@@ -40,12 +43,11 @@ def on_nodes(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, 
     areas, weighed = _areas(on_mesh, mesh)
     record = _record(ours, name)
     first, second = (on_mesh, grid) if name == "a" else (grid, on_mesh)
-    matched(
-        second, first, first.attrs.get("units"), "b"
-    )  # refused before the work, where they are of different problems
+    # what is of different problems is refused before the work
+    matched(second, first, first.attrs.get("units"), "b")
     keep = _behind_launch(on_mesh["z"].values, record["beam"].z0, name)
     on_mesh = on_mesh.isel(node=keep)
-    evaluated = _evaluated(record, grid, on_mesh, other)
+    evaluated = _evaluated(ours, record, on_mesh, other)
     how = f"nodes of {name}; {other} evaluated there; weighed {weighed}"
     p_a, p_b = (on_mesh, evaluated) if name == "a" else (evaluated, on_mesh)
     return p_a, p_b, areas[keep], how
@@ -64,12 +66,9 @@ def _pressure_on_nodes(ds: xr.Dataset, name: str) -> xr.DataArray:
 def _record(ds: xr.Dataset, mesh: str) -> dict[str, Any]:
     """What `field` records of its making; refused where the field cannot be made again from it. `mesh` is the other's name."""
     record = datasets.provenance(ds) if "provenance" in ds.attrs else {}
-    if record.get("question") != "field" or not isinstance(record.get("beam"), Beam):
-        made = (
-            "a source of the user's own"
-            if record.get("question") == "field"
-            else record.get("question", "no known origin")
-        )
+    made = record.get("question", "no known origin")
+    if made != "field" or not set(record) >= NEEDED or not isinstance(record["beam"], Beam):
+        made = "a source of the user's own" if made == "field" else made
         raise ValueError(
             f"{mesh}: expected p on (z, x), or for scattered nodes a field of beamprop beside it, which can be evaluated "
             f"there, got one of {made}: {HOW}"
@@ -90,31 +89,42 @@ def _behind_launch(z: np.ndarray, z0: float, name: str) -> np.ndarray:
     return keep
 
 
-def _evaluated(record: dict[str, Any], grid: xr.DataArray, on_mesh: xr.DataArray, name: str) -> xr.DataArray:
-    """The recorded field at the nodes, on (…, node); refused where the grid's p is not what is recorded."""
+def _evaluated(ours: xr.Dataset, record: dict[str, Any], on_mesh: xr.DataArray, name: str) -> xr.DataArray:
+    """The recorded field at the nodes, on (…, node); refused where the dataset's p is not what is recorded."""
+    grid = pressure_of(ours, name)
     lead = [d for d in ("frequency", "angle") if d in grid.dims]
-    extra = [str(d) for d in grid.dims if d not in (*lead, "z", "x")]
-    if extra or not {"frequency", "angle"} <= set(grid.coords):
+    if not {"frequency", "angle"} <= set(grid.coords) or set(grid.dims) > {*lead, "z", "x"}:
         raise ValueError(f"{name}: expected p by frequency and angle, got {', '.join(map(str, grid.dims))}: select one")
-    places = {d: np.unique(np.linspace(0, grid.sizes[d] - 1, LOOKED_AT).round().astype(int)) for d in ("z", "x")}
-    known = grid.isel(places).transpose(*lead, "z", "x")
-    zs, xs = np.meshgrid(known["z"].values, known["x"].values, indexing="ij")
-    z0, nodes = record["beam"].z0, on_mesh.sizes["node"]
-    x = np.concatenate([on_mesh["x"].values, xs.ravel()])
-    z = np.concatenate([np.maximum(on_mesh["z"].values, z0), zs.ravel()])
-    p = field_at(record, np.atleast_1d(grid["frequency"].values), np.atleast_1d(grid["angle"].values), x, z)
+    known = _looked_at(grid).transpose(*lead, "point")
+    x, z = (np.concatenate([on_mesh[n].values, known[n].values]) for n in ("x", "z"))
+    z = np.maximum(z, record["beam"].z0)  # nodes on the launch plane may lie in front of it by rounding
+    frequency, angle = (np.atleast_1d(grid[n].values) for n in ("frequency", "angle"))
+    p = field_at(record, frequency, angle, x, z)
     p = p.reshape(*(grid.sizes[d] for d in lead), x.size)
-    _check_record(p[..., nodes:], known.values.reshape(*p.shape[:-1], -1), grid, name)
+    nodes = on_mesh.sizes["node"]
+    _check_record(p[..., nodes:], known.values, grid, _stated_error(ours, record), name)
     coords = {n: c.variable for n, c in grid.coords.items() if not {"z", "x"} & set(c.dims)}
     at = {n: ("node", on_mesh[n].values, grid[n].attrs) for n in ("x", "z")}
     return xr.DataArray(p[..., :nodes], coords | at, (*lead, "node"), "p", grid.attrs)
 
 
-def _check_record(made: np.ndarray, given: np.ndarray, grid: xr.DataArray, name: str) -> None:
+def _looked_at(grid: xr.DataArray) -> xr.DataArray:
+    """p of a grid at a few of its points, on the dim point."""
+    few = {d: np.unique(np.linspace(0, grid.sizes[d] - 1, LOOKED_AT).round().astype(int)) for d in ("z", "x")}
+    return grid.isel(few).stack(point=("z", "x"))
+
+
+def _stated_error(ours: xr.Dataset, record: dict[str, Any]) -> float:
+    """The relative error of the field that its dataset states."""
+    return float(max(record["rtol"], np.max(ours["error_estimate"].values if "error_estimate" in ours else 0.0)))
+
+
+def _check_record(made: np.ndarray, given: np.ndarray, grid: xr.DataArray, error: float, name: str) -> None:
     """A field that was changed after it was made, scaled or moved, is not what its dataset records."""
     largest = float(np.nanmax(np.abs(grid.values)))
     off = float(np.nanmax(np.abs(made - given), initial=0.0))
-    if off > AS_RECORDED * largest:
+    rounding = 2 * float(grid.attrs.get("rounding_error", 0.0))  # of files that keep some digits, in both parts
+    if off > (AS_RECORDED + 2 * error) * largest + rounding:
         raise ValueError(
             f"{name}: expected p as its provenance records it, got one that is off by {off / largest:.2g} of the "
             f"largest |p| (was it scaled or moved?): {HOW}"
