@@ -8,6 +8,8 @@ import pytest
 
 import beamprop as bp
 from beamprop.api.field_at import field_at
+from beamprop.contour import choose as choose_module
+from beamprop.fields import scattered
 
 K0 = 2 * np.pi * 2500.0 / 343.0
 
@@ -86,3 +88,27 @@ def test_memory_is_that_of_a_block():
         assert tracemalloc.get_traced_memory()[1] < 2e8
     finally:
         tracemalloc.stop()
+
+
+def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
+    """As of a field on a grid."""
+    choose = choose_module.choose_contour
+
+    def worse(*args):
+        chosen = choose(*args)
+        return chosen._replace(budget=chosen.budget._replace(difference=chosen.budget.difference + 3e-5))
+
+    monkeypatch.setattr(choose_module, "choose_contour", worse)
+    asked = record(bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.096), rtol=1e-8)
+    with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-05 .* rtol 1\.0e-08, mostly: the difference"):
+        field_at(asked, np.array([2500.0]), np.zeros(1), np.zeros(2), np.array([0.0, 0.1]))
+
+
+def test_what_is_not_finite_is_refused(monkeypatch):
+    """A plane wave that meets a pole: no NaN leaves."""
+    monkeypatch.setattr(
+        scattered.transfer_function, "through", lambda s, z0: lambda k, z: np.full((z.size, k.size), np.inf + 0j)
+    )
+    asked = record(bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.096), "periodic", 1.0)
+    with pytest.raises(ValueError, match="the field is not finite"):
+        field_at(asked, np.array([2500.0]), np.zeros(1), np.zeros(2), np.array([0.0, 0.1]))
