@@ -7,6 +7,22 @@ from __future__ import annotations
 
 import numpy as np
 
+#: Builds of the versions whose files are known.
+VERSIONS = {
+    "5.1": "5.1.0.136",
+    "5.2": "5.2.0.220",
+    "5.2a": "5.2.1.152",
+    "5.3": "5.3.0.223",
+    "5.3a": "5.3.1.201",
+    "5.4": "5.4.0.246",
+    "5.5": "5.5.0.359",
+    "5.6": "5.6.0.280",
+    "6.0": "6.0.0.354",
+    "6.1": "6.1.0.252",
+    "6.2": "6.2.0.290",
+    "6.3": "6.3.0.420",
+    "6.4": "6.4.0.293",
+}
 SIZES = {"m": 1.0, "dm": 10.0, "cm": 100.0, "mm": 1e3, "um": 1e6, "\N{MICRO SIGN}m": 1e6, "in": 1 / 0.0254}
 
 
@@ -42,22 +58,34 @@ def parameters(settings, style="plain", index=None):
 
 
 def meta(
-    style, unit, nodes, expressions, dimension, leave_out=(), version="COMSOL 6.0.0.354", description="Total field"
+    style,
+    unit,
+    nodes,
+    expressions,
+    dimension,
+    leave_out=(),
+    version="COMSOL 6.0.0.354",
+    description="Total field",
+    elements=None,
+    table=None,
 ):
-    """The lines of the header above the names of the columns."""
+    """The lines of the header above the names of the columns; `elements` is a count, `table` the name of a table."""
     items = {
         "Model": "slab.mph",
         "Version": version,
         "Date": "Sep 1 2022, 14:21",
         "Dimension": dimension,
         "Nodes": nodes,
+        "Elements": elements,
         "Expressions": expressions,
         "Description": description,
         "Length unit": unit,
+        "Table": table,
     }
+    left = {"Model", "Version", "Date", "Table"} if table is not None else set(items) - {"Table"}
     lines = []
     for key, value in items.items():
-        if key in leave_out or (key == "Length unit" and unit is None):
+        if key in leave_out or key not in left or (key in ("Length unit", "Elements") and value is None):
             continue
         if style in ("txt", "dat"):
             lines.append(f"% {key + ':':<20}{value}")
@@ -160,17 +188,38 @@ def sectionwise(
     leave_out=(),
     crlf=False,
     encoding="utf-8",
+    style="txt",
+    counted=False,
     **more,
 ):
-    """A sectionwise export. coordinates : (points, 2) in m; elements : (elements, corners) from 0."""
-    lines = meta("txt", unit, len(coordinates), len(columns), coordinates.shape[1], leave_out, **more)
+    """A sectionwise export. coordinates : (points, 2) in m; elements : (elements, corners) from 0.
+
+    counted : the line '% Elements:           1122' in the header; style : 'txt', 'csv' or 'semicolon'
+    """
+    parts = {"txt": "   ", "csv": ",", "semicolon": ";"}[style]
+    count = len(elements) if counted and elements is not None else None
+    size, scaled = len(coordinates), coordinates * SIZES.get(unit, 1.0)
+    lines = meta("txt", unit, size, len(columns), coordinates.shape[1], leave_out, elements=count, **more)
     lines.append("% Coordinates")
-    lines += ["   ".join(f"{real(v):<22}" for v in row).rstrip() for row in coordinates * SIZES.get(unit, 1.0)]
+    lines += [parts.join(f"{real(v):<22}" if style == "txt" else real(v) for v in row).rstrip() for row in scaled]
     if elements is not None:
-        lines += ["% Elements (triangles)", *("   ".join(str(k + 1) for k in row) for row in elements)]
+        lines += ["% Elements (triangles)", *(parts.join(str(k + 1) for k in row) for row in elements)]
     for name, values in columns:
         lines += [*_label(name, label), *(number(v, imaginary) for v in values)]
     return _finish(path, lines, crlf, encoding)
+
+
+def table(path, columns, style="txt", name="Table 1 - Point Evaluation 1", version="COMSOL 6.0.0.354"):
+    """A table's export: columns of titles, padded to 25 characters in txt, quoted in csv where they hold commas."""
+    head = meta(style, None, None, None, None, version=version, table=name)
+    titles, rows = [n for n, _ in columns], zip(*(v for _, v in columns), strict=True)
+    if style == "txt":
+        lines = ["% " + "".join(f"{n:<{23 if k == 0 else 25}}" for k, n in enumerate(titles)).rstrip()]
+        lines += ["".join(f"{number(v):<25}" for v in row).rstrip() for row in rows]
+    else:
+        lines = ["% " + ",".join(f'"{n}"' if "," in n else n for n in titles)]
+        lines += [",".join(number(v) for v in row) for row in rows]
+    return _finish(path, [*head, *lines])
 
 
 def _label(name, label):

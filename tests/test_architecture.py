@@ -49,7 +49,7 @@ ONLY = {
     "profiles": {"arrays", "memory", "response", "sources", "modes", "contour", "fields"},
     "io": {"memory", "validate", "media", "sources"},
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
-    "comparison": {"validate", "profiles", "io"},
+    "comparison": {"validate", "sources", "profiles", "io", "api"},
     "plot": {"validate"},
     "parameters": {"memory", "validate", "media", "sources"},
 }

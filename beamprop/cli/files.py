@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .answer import answer
+from .comsol import COMSOL, on_grid, read, refuse_unused
 from .options import Target
 
 if TYPE_CHECKING:
@@ -17,30 +18,32 @@ if TYPE_CHECKING:
 SOURCE = click.Path(exists=True, path_type=Path)
 
 
-def read(path: Path) -> xr.Dataset:
-    """A dataset of ours (.nc, .zarr), or COMSOL's text."""
-    from ..io.comsol import read_comsol
-    from ..io.storage import NETCDF, ZARR, load
-
-    return load(path) if path.suffix.lower() in NETCDF + ZARR else read_comsol(path)
-
-
 @click.command()
 @click.argument("a", type=SOURCE)
 @click.argument("b", type=SOURCE)
 @click.option("--tolerance", type=click.FloatRange(min=0), help="Exit with 1 when the relative L2 error is above this.")
 @click.option("--rescale", is_flag=True, help="Bring b to a by the best complex factor first.")
+@COMSOL
 @click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the comparison to this .nc or .zarr.")
 @click.option("--plot", "-p", type=Target(".png", ".pdf"), help="Draw it into this .png or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json.")
-def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, **o: Any) -> None:
-    """Measure the field in file B against that in file A (.nc, .zarr, or COMSOL's text)."""
+def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any, **o: Any) -> None:
+    """Measure the field in file B against that in file A (.nc, .zarr, or COMSOL's text).
+
+    Scattered nodes are compared as they are with a field of this command, which is evaluated there; --grid interpolates them.
+    """
 
     def ask() -> xr.Dataset:
         from ..comparison.fields import compare
 
-        return compare(read(a), read(b), rescale)
+        units = {name: o[name] for name in ("length_unit", "angle_unit")}
+        refuse_unused(units, a, b)
+        first, second = on_grid(grid, read(a, **units), read(b, **units))
+        ds = compare(first, second, rescale)
+        if o["plot"] and "node" in ds.dims:
+            raise ValueError("plot: expected a comparison on a grid, got one on scattered nodes: give --grid")
+        return ds
 
     def draw(ds: xr.Dataset) -> Any:
         import numpy as np
@@ -62,9 +65,17 @@ def _summary(ds: xr.Dataset) -> str:
             f"relative L2 error    {float(ds['relative_l2'].max()):.4e}",
             f"largest error        {float(ds['largest_error'].max()):.4e} of the largest |a|",
             f"best scale factor    {scale:.6g}",
-            f"widths differ by up to {float(abs(ds['fwhm_difference']).max()) * 1000:.4g} mm",
+            *_widths(ds),
+            f"compared on          {ds.attrs['compared_on']}",
         ]
     )
+
+
+def _widths(ds: xr.Dataset) -> list[str]:
+    """The line on widths, which scattered nodes have none of."""
+    if "fwhm_difference" not in ds:
+        return []
+    return [f"widths differ by up to {float(abs(ds['fwhm_difference']).max()) * 1000:.4g} mm"]
 
 
 @click.command()
@@ -73,20 +84,16 @@ def _summary(ds: xr.Dataset) -> str:
 @click.option("--x", help="The file's coordinate that is lateral; its first by default.")
 @click.option("--z", help="The file's coordinate that is depth; its second by default.")
 @click.option("--expression", help="The expression that is the pressure, where several may be.")
+@COMSOL
 @click.option("--split-complex", is_flag=True, help="Write real and imaginary parts as variables of their own.")
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing.")
-def convert(
-    source: Path, target: Path, x: str | None, z: str | None, expression: str | None, split_complex: bool, quiet: bool
-) -> None:
+def convert(source: Path, target: Path, split_complex: bool, quiet: bool, grid: Any, **options: Any) -> None:
     """Bring COMSOL's text, or a dataset of ours, to a .nc or .zarr."""
-    from ..io.storage import NETCDF, ZARR, save
+    from ..io.storage import save
 
     def ask() -> xr.Dataset:
-        if source.suffix.lower() in NETCDF + ZARR:
-            return read(source)
-        from ..io.comsol import read_comsol
-
-        return read_comsol(source, x, z, expression)
+        refuse_unused({name: options[name] for name in ("length_unit", "angle_unit")}, source)
+        return on_grid(grid, read(source, **options))[0]
 
     o = {"output": None, "plot": None, "as_json": False, "quiet": True}
     ds = answer(o, ask, None, str)

@@ -1,6 +1,7 @@
 """Two fields of the same problem, measured against each other: ours, finite elements, or a file's.
 
-b is brought onto a's points in the region that both cover. With weights w (the grid's cells) and sums over z and x,
+b is brought onto a's points in the region that both cover, or a field of ours is evaluated at the nodes of the other's mesh. With
+weights w (the grid's cells, the areas around nodes) and sums over z and x,
 
     relative_l2 = sqrt(sum w |a - b|^2 / sum w |a|^2),    scale = sum w conj(b) a / sum w |b|^2,
 
@@ -17,8 +18,9 @@ import xarray as xr
 from .. import validate
 from ..io import datasets
 from ..io.labels import COMPARISON, COORDINATES, label
-from .grid import matched, on_common_grid, pressure_of
-from .norms import best_scale, errors, scaled_misfit, weights
+from .grid import PLACES, matched, on_common_grid, pressure_of
+from .nodes import on_nodes, scattered
+from .norms import best_scale, cell_areas, errors, scaled_misfit, weights
 from .period import wraparound
 from .warn import warn_of_boundaries, warn_of_conjugate, warn_of_interpolation, warn_of_layers
 from .widths import widths_and_peaks
@@ -36,7 +38,7 @@ def compare(
     ----------
     a, b : Dataset
         With the pressure `p` on (z, x), from `beamprop.field`, `fem.field` or `read_comsol`; further dims such as
-        frequency and angle must be the same in both.
+        frequency and angle must be the same in both. Either may be on scattered nodes, the other being from `field`.
     rescale : bool
         Multiply b by the best complex scale factor first, for fields that were launched with different amplitudes.
     open_reference : Dataset, optional
@@ -50,7 +52,8 @@ def compare(
         the largest |a|) and where it is. By z too: `relative_l2_by_z` (over |a| at that z), `fwhm_a`, `fwhm_b` and
         `fwhm_difference` (NaN where the half level is not reached), `peak_a`, `peak_b` and `peak_difference`. The
         fields `p_a`, `p_b` and `error` = |a - b| on a's points in the region that both cover, in a's unit. The
-        attribute `conjugate_fits_better` is 1 where conj(b) is much nearer to a than b.
+        attribute `conjugate_fits_better` is 1 where conj(b) is much nearer to a than b; `compared_on` says which points
+        those are, and what was interpolated. On nodes there are no quantities by z.
 
     Raises
     ------
@@ -69,6 +72,10 @@ def compare(
     well it does. Inside a slab of thin layers the field changes from layer to layer, so there both need the same z.
     Points that are NaN in either field are left out.
 
+    Nodes of a mesh: the field of ours is not interpolated but evaluated there, from the slab, the beam and the rtol that its
+    dataset records. N nodes cost N times the plane waves of the field (hundreds to thousands) in exponentials, in blocks of bounded
+    memory. Two meshes, or a mesh and a field that `field` did not make, are brought onto one grid with `to_grid`.
+
     Examples
     --------
     >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
@@ -79,59 +86,90 @@ def compare(
     0.056
     """
     validate.flag(rescale, "rescale")
+    compared = _compared_on_nodes if scattered(a) or scattered(b) else _compared_on_grid
     with np.errstate(over="ignore", invalid="ignore"):  # a ratio of |p| that no double holds is infinite
-        return _compared(a, b, bool(rescale), open_reference)
+        return compared(a, b, bool(rescale), open_reference)
 
 
-def _compared(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_reference: xr.Dataset | None) -> xr.Dataset:
+def _compared_on_grid(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_reference: xr.Dataset | None) -> xr.Dataset:
     p_a = pressure_of(a, "a")
     unit = p_a.attrs.get("units")
     p_b = matched(pressure_of(b, "b"), p_a, unit, "b")
     z_b = p_b["z"].values
     p_a, p_b, shares = on_common_grid(p_a, p_b, "b")
     between = np.hypot(shares["z"], shares["x"])
-    w = weights(p_a, p_b)
-    filled_a, filled_b = (np.where(w > 0, p.values, 0) for p in (p_a, p_b))
-    scale = best_scale(filled_a, filled_b, w)
-    misfit = scaled_misfit(filled_a, filled_b, w)
-    out: dict[str, Any] = {"scale": scale, "relative_l2_scaled": misfit, "interpolation_error": between}
+    w = weights(p_a.values, p_b.values, cell_areas(p_a))
+    out, filled_a, filled_b = _scaled(p_a.values, p_b.values, w, rescale)
     conjugate = warn_of_conjugate(filled_a, filled_b, w)
     if open_reference is not None:
         out["wraparound"] = wraparound(a, b, open_reference)
     warn_of_boundaries(a, b, out.get("wraparound"))
     if rescale:
-        p_b, filled_b = p_b * scale[..., None, None], filled_b * scale[..., None, None]
+        p_b = p_b * out["scale"][..., None, None]
     out |= errors(filled_a, filled_b, w, p_a.x.values, p_a.z.values) | widths_and_peaks(p_a, p_b)
     if not (shares["z"] and warn_of_layers(a, b, z_b, p_a["z"].values)):
         warn_of_interpolation(between, out["relative_l2"])
-    out |= {"p_a": p_a.values, "p_b": p_b.values, "error": np.abs(p_a.values - p_b.values)}
-    return _dataset(out, p_a, unit, a, b, rescale=rescale, conjugate_fits_better=int(conjugate))
+    out |= {"interpolation_error": between} | _fields_of(p_a, p_b)
+    how = "points of a; b by cubic splines where it has other points"
+    return _dataset(out, p_a, (a, b), rescale, conjugate_fits_better=int(conjugate), compared_on=how)
+
+
+def _compared_on_nodes(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_reference: xr.Dataset | None) -> xr.Dataset:
+    if open_reference is not None:
+        raise ValueError("open_reference: expected none for scattered nodes, got one")
+    p_a, p_b, areas, how = on_nodes(a, b)
+    p_b = matched(p_b, p_a, p_a.attrs.get("units"), "b")
+    row_a, row_b = (p.values[..., None, :] for p in (p_a, p_b))  # as one row of a grid
+    w = weights(row_a, row_b, areas)
+    out, filled_a, filled_b = _scaled(row_a, row_b, w, rescale)
+    conjugate = warn_of_conjugate(filled_a, filled_b, w)
+    warn_of_boundaries(a, b, None)
+    if rescale:
+        p_b = p_b * out["scale"][..., None]
+    out |= errors(filled_a, filled_b, w, np.arange(areas.size), np.zeros(1)) | {"interpolation_error": 0.0}
+    worst = out["largest_error_x"]
+    out |= {f"largest_error_{n}": p_a[n].values[worst] for n in ("x", "z")} | _fields_of(p_a, p_b)
+    del out["relative_l2_by_z"]
+    return _dataset(out, p_a, (a, b), rescale, conjugate_fits_better=int(conjugate), compared_on=how)
+
+
+def _scaled(
+    a: np.ndarray, b: np.ndarray, w: np.ndarray, rescale: bool
+) -> tuple[dict[str, Any], np.ndarray, np.ndarray]:
+    """The best scale and what it leaves, and both fields, 0 where either has no value; b times the scale if asked for."""
+    a, b = (np.where(w > 0, p, 0) for p in (a, b))
+    scale, misfit = best_scale(a, b, w), scaled_misfit(a, b, w)
+    return {"scale": scale, "relative_l2_scaled": misfit}, a, b * scale[..., None, None] if rescale else b
+
+
+def _fields_of(p_a: xr.DataArray, p_b: xr.DataArray) -> dict[str, np.ndarray]:
+    return {"p_a": p_a.values, "p_b": p_b.values, "error": np.abs(p_a.values - p_b.values)}
 
 
 def _dataset(
-    variables: dict[str, np.ndarray], p: xr.DataArray, unit: str | None, a: xr.Dataset, b: xr.Dataset, **settings: Any
+    variables: dict[str, Any], p: xr.DataArray, compared: tuple[xr.Dataset, xr.Dataset], rescale: bool, **attrs: Any
 ) -> xr.Dataset:
     known = {n: (tuple(map(str, c.dims)), c.values) for n, c in p.coords.items() if n in COORDINATES}
     frequency = np.atleast_1d(np.asarray(p.coords["frequency"].values if "frequency" in p.coords else [], float))
     dims = tuple(map(str, p.dims))
-    own = {**dict.fromkeys(_FIELDS, dims), **dict.fromkeys(_BY_Z, dims[:-1]), "interpolation_error": ()}
-    arrays = {n: (own.get(n, dims[:-2]), v) for n, v in variables.items()}
+    lead = tuple(d for d in dims if d not in PLACES)
+    own = {**dict.fromkeys(_FIELDS, dims), **dict.fromkeys(_BY_Z, (*lead, "z")), "interpolation_error": ()}
+    arrays = {n: (own.get(n, lead), v) for n, v in variables.items()}
     ds = datasets.make(
         arrays,
         {str(n): c for n, c in known.items()},
         "compare",
         frequency,
-        a=a.attrs.get("provenance"),
-        b=b.attrs.get("provenance"),
-        **settings,
+        a=compared[0].attrs.get("provenance"),
+        b=compared[1].attrs.get("provenance"),
+        rescale=rescale,
+        **attrs,
     )
     further = {n: c.variable for n, c in p.coords.items() if n not in known and set(c.dims) <= set(p.dims)}
     ds = ds.assign_coords(further)
     for name, variable in ds.data_vars.items():
         if COMPARISON[str(name)][0] == "Pa":
-            variable.attrs["units"] = unit or "1"
+            variable.attrs["units"] = p.attrs.get("units") or "1"
     for name in ("z", "x"):
         ds[name].attrs = label(name) | p[name].attrs
-    return ds.assign_attrs(
-        {k: v for k, v in settings.items() if k == "conjugate_fits_better"}, rescaled=int(settings["rescale"])
-    )
+    return ds.assign_attrs(attrs, rescaled=int(rescale))

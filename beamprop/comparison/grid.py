@@ -12,6 +12,8 @@ from .resample import resample
 
 #: Positions that differ by less than this share of the span are the same: files print ten digits and more of them.
 SAME_POSITION = 1e-9
+#: Dims that are places.
+PLACES = ("z", "x", "node")
 #: Frequencies and angles of files are rounded to five digits.
 ROUNDED = 1e-4
 
@@ -23,7 +25,10 @@ def pressure_of(ds: Any, name: str) -> xr.DataArray:
         raise ValueError(f"{name}: expected a dataset with the pressure p, got {got}")
     p = ds["p"]
     if "node" in p.dims:
-        raise ValueError(f"{name}: expected p on (z, x), got p on scattered nodes: bring it onto a grid with to_grid")
+        raise ValueError(
+            f"{name}: expected p on (z, x), got p on scattered nodes: bring it onto a grid with to_grid "
+            "(the command's --grid)"
+        )
     for axis in ("z", "x"):
         if axis not in p.coords:
             raise ValueError(f"{name}: expected p on (z, x), got no {axis} among {', '.join(map(str, p.coords))}")
@@ -43,8 +48,8 @@ def matched(p: xr.DataArray, to: xr.DataArray, unit: str | None, name: str) -> x
         if {plain_unit(str(own_unit)), plain_unit(str(unit))} - set(PRESSURE_UNITS):
             raise ValueError(f"{name}: expected p in {unit!r} as a has it, or in a unit of pressure, got {own_unit!r}")
         p = p * (PRESSURE_UNITS[plain_unit(str(own_unit))] / PRESSURE_UNITS[plain_unit(str(unit))])
-    lead = [d for d in to.dims if d not in ("z", "x")]
-    for dim in {*lead, *p.dims} - {"z", "x"}:
+    lead = [d for d in to.dims if d not in PLACES]
+    for dim in {*lead, *p.dims} - set(PLACES):
         if (dim in lead) != (dim in p.dims):
             raise ValueError(f"{name}: expected the dims {to.dims} as a has them, got {p.dims}: select one {dim}")
     for key in {*lead, "frequency", "angle"} & set(p.coords) & set(to.coords):
@@ -52,7 +57,7 @@ def matched(p: xr.DataArray, to: xr.DataArray, unit: str | None, name: str) -> x
         if key in lead:
             p = p.assign_coords({key: to[key]})
     drop = [c for c in p.coords if c not in to.coords]
-    return p.drop_vars(drop).transpose(*lead, "z", "x")
+    return p.drop_vars(drop).transpose(*lead, *(d for d in PLACES if d in p.dims))
 
 
 def _check_same(p: xr.DataArray, to: xr.DataArray, key: Any, name: str) -> None:

@@ -9,16 +9,21 @@ import numpy as np
 import xarray as xr
 
 
-def weights(p_a: xr.DataArray, p_b: xr.DataArray) -> np.ndarray:
-    """Area of each point's cell, 0 where either field has no value; equal on an even grid."""
-    dz, dx = (np.gradient(p_a[d].values) if p_a.sizes[d] > 1 else np.ones(1) for d in ("z", "x"))
-    good = np.isfinite(p_a.values) & np.isfinite(p_b.values)
+def cell_areas(p: xr.DataArray) -> np.ndarray:
+    """Area of the cell of each point of a grid (Z, X): equal on an even one."""
+    dz, dx = (np.gradient(p[d].values) if p.sizes[d] > 1 else np.ones(1) for d in ("z", "x"))
+    return np.outer(dz, dx)
+
+
+def weights(a: np.ndarray, b: np.ndarray, areas: np.ndarray) -> np.ndarray:
+    """Areas of the points, 0 where either field has no value."""
+    good = np.isfinite(a) & np.isfinite(b)
     missing = good.size - np.count_nonzero(good)
     if missing == good.size:
         raise ValueError("b: expected values in the region that a covers, got NaN in one of them throughout")
     if missing:
         warnings.warn(f"{missing} of {good.size} points have no value in a or b and are left out", stacklevel=4)
-    return good * np.outer(dz, dx)
+    return good * areas
 
 
 def _divide(top: np.ndarray, bottom: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from .grid import matched, on_common_grid, pressure_of
-from .norms import relative_l2, weights
+from .norms import cell_areas, relative_l2, weights
 from .warn import boundary_of
 
 
@@ -21,5 +21,5 @@ def wraparound(a: xr.Dataset, b: xr.Dataset, reference: xr.Dataset) -> np.ndarra
     chosen = kinds.index("periodic") if "periodic" in kinds else kinds.index(None)
     p = pressure_of((a, b)[chosen], "ab"[chosen])
     p, p_open, _ = on_common_grid(p, matched(p_open, p, p.attrs.get("units"), "open_reference"), "open_reference")
-    w = weights(p, p_open)
+    w = weights(p.values, p_open.values, cell_areas(p))
     return relative_l2(np.where(w > 0, p.values, 0), np.where(w > 0, p_open.values, 0), w)

@@ -73,7 +73,7 @@ def fill(waves: Superposition, h: np.ndarray, out: np.ndarray) -> None:
             if grid is None
             else sums.grid_sum(contour, h, right, left, grid, n)
         )
-        _check_finite(summed)
+        check_finite(summed)
         sources.interpolated_to(summed, out)
         return
     if grid is not None:
@@ -93,10 +93,11 @@ def fill(waves: Superposition, h: np.ndarray, out: np.ndarray) -> None:
             into[...] = sums.direct_sum(contour, h, a, b, x)
     else:
         out[...] = sums.direct_sum(contour, h, right, left, x)
-    _check_finite(out)
+    check_finite(out)
 
 
-def _check_finite(p: np.ndarray) -> None:
+def check_finite(p: np.ndarray) -> None:
+    """Refuse a field that is not finite."""
     with np.errstate(over="ignore", invalid="ignore"):
         surely = np.isfinite(p.sum())  # then no term is not finite
     if not surely and not np.all(np.isfinite(p)):

@@ -7,7 +7,8 @@ header names the columns: coordinates, then one column for each expression and c
 
 with the commas inside of a name unquoted; in txt and dat the names stand apart by one blank or more, and hold blanks
 too. The grid form has the sections ``% Grid`` (one row for each axis) and ``% Data`` (x runs along a row), the
-sectionwise form ``% Coordinates``, ``% Elements`` and ``% Data``. COMSOL is exp(+i w t), so complex fields are
+sectionwise form ``% Coordinates``, ``% Elements`` and ``% Data``, with or without counts such as ``% Elements: 1122`` above them.
+A table (``% Table``) is a spreadsheet whose columns are titles, parted by two blanks or more, or quoted. COMSOL is exp(+i w t), so complex fields are
 conjugated here.
 
 Data flows text -> names -> forms (a table of points and columns, lengths in m) -> points, parameters -> assemble (the dataset). Every refusal
@@ -25,7 +26,7 @@ import xarray as xr
 
 from ... import memory, validate
 from .assemble import make_dataset
-from .forms import READERS, SECTION
+from .forms import READERS, SECTION, read_spreadsheet
 from .text import ANGLES, LENGTHS, PRESSURE_UNITS, length_factor, plain_unit, scan
 
 __all__ = ["PRESSURE_UNITS", "plain_unit", "read_comsol", "to_grid"]
@@ -63,7 +64,9 @@ def read_comsol(
     Dataset
         `p` [Pa] complex and the other expressions under names without the physics' tag, complex or real, with their
         units; dims (frequency, angle, other parameters, z, x). A parameter with one value is a scalar coordinate.
-        Points that form no grid have the dim `node`, with coordinates x(node) and z(node): see `to_grid`.
+        Points that form no grid have the dim `node`, with coordinates x(node) and z(node): see `to_grid`, and `compare`.
+        Rows that are no points have the dim `row` and no coordinates, each column a variable in the file's unit: tables
+        (``% Table``), plots of curves (``R, Height``), sweeps (``k1, ...``). x= or z= makes a line of them.
 
     Raises
     ------
@@ -91,9 +94,14 @@ def read_comsol(
     source = scan(str(validate.as_path(path)))
     factor = length_factor(source, length_unit)
     kinds = [m[1].lower() for _, text in source.header if (m := SECTION.fullmatch(text))]
-    table = READERS.get(kinds[0] if kinds else "", READERS["spreadsheet"])(source, factor)
-    if length_unit is None and source.meta.get("length unit", "null") in ("", "null"):
-        warnings.warn(f"{path}: states no unit of length, metres taken (length_unit= says otherwise)", stacklevel=2)
+    reader = READERS.get(kinds[0] if kinds else "")
+    placed = x is not None or z is not None
+    table = reader(source, factor) if reader else read_spreadsheet(source, factor, placed, expression)
+    if table.coordinates and length_unit is None and source.meta.get("length unit", "null") in ("", "null"):
+        warnings.warn(
+            f"{path}: states no unit of length, metres taken (length_unit= or --length-unit says otherwise)",
+            stacklevel=2,
+        )
     return make_dataset(table, (x, z), expression, conjugate, angle_unit)
 
 

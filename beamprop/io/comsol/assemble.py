@@ -131,6 +131,8 @@ def _label(
     swept = {n: ((n,) if len(v) > 1 else (), np.array(v) if len(v) > 1 else v[0]) for n, (v, _) in parameters.items()}
     known = {n: c for n, c in swept.items() if n in ("frequency", "angle")}
     pressure = _pressure(source, variables, expression)
+    if not places and expression is None and pressure and plain_unit(variables[pressure][2]) not in PRESSURE_UNITS:
+        pressure = None  # a column p of a table may be a power
     frequency = np.atleast_1d(np.asarray(parameters.get("frequency", ([], ""))[0], float))
     made = _make_p(source, variables, pressure, conjugate)
     ds = datasets.make(
@@ -149,7 +151,9 @@ def _label(
     for axis, name in chosen.items():
         ds[axis].attrs["file_coordinate"] = name
     time = "exp(-i w t), conjugated from COMSOL's exp(+i w t)" if conjugate else "exp(+i w t), as in the file"
-    ds.attrs["convention"] = f"{time}; SI units; origin of z as in the file"
+    ds.attrs["convention"] = f"{time}; " + (
+        "SI units; origin of z as in the file" if places else "units as in the file"
+    )
     if "p" in made:
         ds.p.attrs["expression"] = str(pressure)
         if not conjugate:
@@ -183,12 +187,13 @@ def _add_rest(
 ) -> xr.Dataset:
     """The other expressions, under names that are free, and the elements."""
     alike = Counter(_clean(n) for n in variables)
+    reserved = RESERVED if table.coordinates else set(RESERVED) - {"x", "z"}
     added: dict[str, Any] = {}
     for name, (dims, values, unit) in variables.items():
         word = _clean(name)
-        if word in ds.variables or word in RESERVED or alike[word] > 1:
+        if word in ds.variables or word in reserved or alike[word] > 1:
             word = re.sub(r"\W+", "_", name).strip("_")
-        while word in ds.variables or word in added or word in RESERVED or word[0].isdigit():
+        while word in ds.variables or word in added or word in reserved or word[0].isdigit():
             word = f"v_{word}"
         attrs = {"units": unit or "1", "long_name": name, "expression": name}
         if not np.iscomplexobj(values):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import warnings
-from dataclasses import dataclass, field
+from collections import Counter
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from .names import Column, column_names, parse_column
-from .text import LENGTHS, META_LINE, Source, find_delimiter, plain_unit, short, split_rows, to_numbers
+from .names import Column, column_names, parse_column, parse_title
+from .text import ELEMENT_COUNT, LENGTHS, META_LINE, Source, find_delimiter, plain_unit, short, split_rows, to_numbers
 
 #: Coordinate of the dataset: what models call it.
 PARAMETERS = {
@@ -18,12 +19,19 @@ PARAMETERS = {
     "angle": ("theta", "theta0", "theta_0", "theta_i", "theta_inc", "angle"),
 }
 _COORDINATES = ("x", "y", "z", "r", "X", "Y", "Z", "R")
-SECTION = re.compile(r"(Grid|Coordinates|Elements|Data)\b\s*:?\s*(.*)", re.IGNORECASE)
+#: Places along a line: those, and the coordinates of a cut line's or plane's own.
+_PLACE = re.compile(r"[xyzr]|(?:cln|cpl)\d+[xyz]", re.IGNORECASE)
+#: What plots call the values of a curve, whatever they are over.
+_CURVE = "Height"
+SECTION = re.compile(rf"(?!{ELEMENT_COUNT})(Grid|Coordinates|Elements|Data)\b\s*:?\s*(.*)", re.IGNORECASE)
 
 
 @dataclass
 class Table:
-    """A file's contents: coordinates [m] of its points, columns and their values, one row for each point."""
+    """A file's contents: coordinates [m] of its points, columns and their values, one row for each point.
+
+    A table whose rows are no points has no coordinates.
+    """
 
     source: Source
     coordinates: dict[str, np.ndarray]
@@ -33,8 +41,8 @@ class Table:
     scattered: dict[str, tuple[np.ndarray, str]] = field(default_factory=dict)  # parameters that are columns
 
 
-def read_spreadsheet(source: Source, factor: float) -> Table:
-    """Rows of coordinates and values below a line of names."""
+def read_spreadsheet(source: Source, factor: float, placed: bool, expression: str | None) -> Table:
+    """Rows of coordinates and values below a line of names; `placed` says that the first of a line's columns is a place."""
     lines = source.body
     for n, text in lines:
         if text.startswith("%"):
@@ -44,9 +52,14 @@ def read_spreadsheet(source: Source, factor: float) -> Table:
     line, names = _header_names(source, delimiter, len(rows[0]))
     _check_nodes(source, len(rows))
     numbers = [n for n, _ in lines]
-    columns = [parse_column(source, line, name) for name in names]
+    columns = [(parse_title if "table" in source.meta else parse_column)(source, line, name) for name in names]
     values = [to_numbers(source, numbers, list(cells)) for cells in zip(*rows, strict=True)]
+    if "table" in source.meta or source.meta.get("dimension") == "0":
+        return Table(source, {}, _told_apart(columns), values)
     dimension = _count_coordinates(source, line, columns)
+    _check_expressions(source, len(columns), dimension)
+    if dimension == 1 and not placed and not _is_line(columns, expression):
+        return Table(source, {}, _told_apart(_with_length_unit(source, columns)), values)
     table = Table(source, {}, [], [])
     for k, (column, value) in enumerate(zip(columns, values, strict=True)):
         if k < dimension:
@@ -56,7 +69,6 @@ def read_spreadsheet(source: Source, factor: float) -> Table:
         else:
             table.columns.append(column)
             table.values.append(value)
-    _check_expressions(source, len(columns), dimension)
     if not table.columns:
         source.refuse(line, "columns of values beside the coordinates", ", ".join(names))
     return table
@@ -67,8 +79,11 @@ def _header_names(source: Source, delimiter: str, width: int) -> tuple[int, list
     line, text = source.header[-1] if source.header else (None, "")
     if line is None or not text or META_LINE.fullmatch(text):
         source.refuse(line, "a line that names the columns above the numbers", short(text) if text else "none")
-    for trial in (delimiter, *(d for d in (",", ";", " ") if d != delimiter)):
-        names = column_names(text, trial)
+    splits = [column_names(text, d) for d in (delimiter, *(d for d in (",", ";", " ") if d != delimiter))]
+    prose = [
+        name.strip('"') for name in re.split(r"\s{2,}|\t", text)
+    ]  # titles of tables and legends of plots, in columns
+    for names in [prose, *splits] if "table" in source.meta else [*splits, prose]:
         if len(names) == width:
             return line, names
     count = len(column_names(text, delimiter))
@@ -86,6 +101,37 @@ def _count_coordinates(source: Source, line: int, columns: list[Column]) -> int:
         names = ", ".join(c.expression for c in columns[:4])
         source.refuse(line, f"one to three coordinates first ({', '.join(_COORDINATES)})", names)
     return count
+
+
+def _is_line(columns: list[Column], expression: str | None) -> bool:
+    """Whether the rows of a one-dimensional file are points of a line.
+
+    Sweeps of a parameter are none, nor curves of a plot, unless one is the `expression` to be read.
+    """
+    first = columns[0]
+    place = plain_unit(first.unit) in LENGTHS if first.unit else _PLACE.fullmatch(first.expression)
+    curves = any(c.expression == _CURVE for c in columns) or _told_apart(columns) != columns
+    return bool(place) and (expression is not None or not curves)
+
+
+def _told_apart(columns: list[Column]) -> list[Column]:
+    """Columns of one name, as the curves of a plot have, with numbers: 'p', 'p (2)'."""
+    seen: Counter[str] = Counter()
+    out = []
+    for column in columns:
+        name = column.expression
+        seen[name] += not column.parameters
+        again = seen[name] > 1 and not column.parameters
+        out.append(replace(column, expression=f"{name} ({seen[name]})") if again else column)
+    return out
+
+
+def _with_length_unit(source: Source, columns: list[Column]) -> list[Column]:
+    """The file's unit of length on the first column, if that has a coordinate's name."""
+    first, stated = columns[0], source.meta.get("length unit", "null")
+    if first.unit or stated in ("", "null") or not _PLACE.fullmatch(first.expression):
+        return columns
+    return [replace(first, unit=stated), *columns[1:]]
 
 
 def _coordinate(source: Source, line: int, column: Column, value: np.ndarray, factor: float) -> np.ndarray:
@@ -230,8 +276,11 @@ def _read_elements(source: Source, sections: list[_Section], nodes: int) -> np.n
         if not whole or corners.min() < 1 or corners.max() > nodes:
             source.refuse(section.line, f"numbers of nodes from 1 to {nodes} in the elements", "others")
         blocks.append(corners.astype(int) - 1)
+    stated, count = source.count("elements"), sum(len(block) for block in blocks)
+    if stated is not None and stated != count:
+        warnings.warn(f"{source.path}: '% Elements' states {stated} elements, there are {count}", stacklevel=4)
     return np.concatenate(blocks) if len({f.shape[1] for f in blocks}) == 1 else None
 
 
 #: First section of the header -> reader.
-READERS = {"grid": read_grid, "coordinates": read_sections, "spreadsheet": read_spreadsheet}
+READERS = {"grid": read_grid, "coordinates": read_sections}

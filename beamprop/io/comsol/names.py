@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -94,6 +94,13 @@ def parse_column(source: Source, line: int, name: str) -> Column:
     if not head:
         source.refuse(line, "an expression in each column's name", repr(name))
     return Column(head, unit, tuple(parameters))
+
+
+def parse_title(source: Source, line: int, name: str) -> Column:
+    """Parse the title of a table's column, 'Total pressure (Pa), Point: (0.1, 0)': the point is part of what is evaluated."""
+    head, point, where = name.partition(", Point:")
+    column = parse_column(source, line, head)
+    return replace(column, expression=f"{column.expression}{point}{where}")
 
 
 def _split_unit(text: str) -> tuple[str, str]:

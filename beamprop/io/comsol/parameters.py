@@ -11,7 +11,7 @@ from .names import Column
 from .text import QUANTITIES, Source, plain_unit
 
 #: Names of the dataset that no parameter takes.
-RESERVED = ("x", "z", "p", "node", "elements", "element", "corner")
+RESERVED = ("x", "z", "p", "node", "elements", "element", "corner", "row")
 
 
 def parameter_names(file_names: Iterable[str]) -> dict[str, str]:
@@ -30,7 +30,8 @@ def in_si(source: Source, columns: list[Column], names: dict[str, str], angle_un
     bare = any(names[n] == "angle" and not unit and value != 0 for c in columns for n, value, unit in c.parameters)
     if bare and angle_unit is None:
         warnings.warn(
-            f"{source.path}: states no unit of the angle, degrees taken (angle_unit= says otherwise)", stacklevel=4
+            f"{source.path}: states no unit of the angle, degrees taken (angle_unit= or --angle-unit says otherwise)",
+            stacklevel=4,
         )
     defaults = {"frequency": "Hz", "angle": angle_unit or "deg", "time": "s"}
     kinds = {"frequency": "Hz", "angle": "degree", "time": "s"}

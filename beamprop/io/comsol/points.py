@@ -15,18 +15,27 @@ from .text import Source
 ROOM, SPARSE = 2**16, 16
 #: Coordinates closer than this share of their span are one, for exports carry rounding errors.
 NEAR = 1e-9
+#: Coordinates closer than this share of the largest span are one: planes and lines that are turned in space carry such noise.
+NOISE = 1e-12
 
 
 def choose_axes(table: Table, x: str | None, z: str | None) -> dict[str, str]:
     """Dataset's axis -> file's coordinate; a third coordinate must be constant."""
     coordinates = table.coordinates
     for argument, name in (("x", x), ("z", z)):
+        if name is not None and not coordinates:
+            raise ValueError(
+                f"{argument}: expected none, for the rows of {table.source.path} are no points, got {name!r}"
+            )
         if name is not None and name not in coordinates:
             raise ValueError(
                 f"{argument}: expected one of the coordinates {', '.join(coordinates)} of {table.source.path}, got {name!r}"
             )
+    if not coordinates:
+        return {}
     left = [n for n in coordinates if n not in (x, z)]
-    varying = [n for n in left if np.ptp(coordinates[n]) > NEAR * np.abs(coordinates[n]).max()]
+    noise = _noise(coordinates)
+    varying = [n for n in left if np.ptp(coordinates[n]) > max(NEAR * np.abs(coordinates[n]).max(), noise)]
     if len(coordinates) > 2 and len(varying) > 2 - sum(n is not None for n in (x, z)):
         raise ValueError(
             f"x, z: expected a plane, got {table.source.path} with varying {', '.join(coordinates)}: export one plane of it"
@@ -38,15 +47,20 @@ def choose_axes(table: Table, x: str | None, z: str | None) -> dict[str, str]:
     return {"z": left.pop(0) if z is None else z, "x": x}
 
 
-def _snap(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _noise(coordinates: dict[str, np.ndarray]) -> float:
+    """What coordinates may be off by rounding, as their largest span tells."""
+    return NOISE * max(float(np.ptp(c)) for c in coordinates.values())
+
+
+def _snap(values: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Distinct values, those within rounding errors being one, and the index of each value among them."""
     order = np.argsort(values, kind="stable")
     ordered = values[order]
-    near = NEAR * max(float(np.ptp(values)), 1e-6 * float(np.abs(values).max()))
+    near = max(NEAR * max(float(np.ptp(values)), 1e-6 * float(np.abs(values).max())), noise)
     new = np.concatenate([[True], np.diff(ordered) > near])
     index = np.empty(values.size, int)
     index[order] = np.cumsum(new) - 1
-    return ordered[new], index
+    return np.where(np.abs(ordered[new]) > noise, ordered[new], 0.0), index
 
 
 def place(table: Table, chosen: dict[str, str]) -> tuple[dict[str, np.ndarray], np.ndarray, dict[str, int]]:
@@ -54,7 +68,11 @@ def place(table: Table, chosen: dict[str, str]) -> tuple[dict[str, np.ndarray], 
 
     Points that fill at least half of the grid of their distinct coordinates are a grid, with NaN elsewhere.
     """
-    snapped = {axis: _snap(table.coordinates[name]) for axis, name in chosen.items()}
+    if not chosen:
+        rows = table.values[0].size
+        return {}, np.arange(rows), {"row": rows}
+    noise = _noise(table.coordinates)
+    snapped = {axis: _snap(table.coordinates[name], noise) for axis, name in chosen.items()}
     shape = {axis: s[0].size for axis, s in snapped.items()}
     key = np.zeros(len(next(iter(table.coordinates.values()))), int)
     for axis, (_, index) in snapped.items():

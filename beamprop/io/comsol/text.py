@@ -43,8 +43,10 @@ _TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 ANGLES = {"deg": 1.0, "degree": 1.0, "\N{DEGREE SIGN}": 1.0, "rad": 180 / np.pi}
 #: Kind of quantity: (the unit it is brought to, factors).
 QUANTITIES = (("Hz", _FREQUENCIES), ("m", LENGTHS), ("s", _TIMES), ("degree", ANGLES), ("Pa", PRESSURE_UNITS))
-_META = ("Model", "Version", "Date", "Dimension", "Nodes", "Expressions", "Description", "Length unit")
-META_LINE = re.compile(rf"({'|'.join(_META)})\s*[:,;\t]\s*(.*)", re.IGNORECASE)
+_META = ("Model", "Version", "Date", "Dimension", "Nodes", "Expressions", "Description", "Length unit", "Table")
+#: '% Elements: 1122' is a count; '% Elements (triangles)' begins a section.
+ELEMENT_COUNT = r"Elements(?=\s*[:,;\t]\s*\d+$)"
+META_LINE = re.compile(rf"({'|'.join(_META)}|{ELEMENT_COUNT})\s*[:,;\t]\s*(.*)", re.IGNORECASE)
 _DECIMAL_COMMA = re.compile(
     r"[-+]?\d*,?\d+([eE][-+]?\d+)?([-+]\d*,?\d+([eE][-+]?\d+)?\*?[ij])?[ij]?|[-+]?(nan|inf)", re.IGNORECASE
 )
@@ -61,6 +63,8 @@ class Source:
 
     def refuse(self, line: int | None, expected: str, got: str) -> NoReturn:
         where = f"{self.path}, line {line}" if line else self.path
+        if "table" in self.meta:
+            got += f" (the file is a '% Table' export, {short(self.meta['table'])})"
         raise ValueError(f"{where}: expected {expected}, got {got}")
 
     def count(self, key: str) -> int | None:
