@@ -31,16 +31,22 @@ if TYPE_CHECKING:
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
     from .io.storage import load, save
+    from .media.attenuation import power_law
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
     from .media.fluids import AIR, Fluid
     from .media.lmmd import lmmd_cell
+    from .media.materials import material, materials
+    from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Membrane, Slab
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
 
 _HOMES = {
+    "media.attenuation": ("power_law",),
     "media.fluids": ("AIR", "Fluid"),
+    "media.materials": ("material", "materials"),
+    "media.properties": ("Tabulated",),
     "media.structures": ("Cell", "Layer", "Membrane", "Slab"),
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
@@ -75,6 +81,7 @@ __all__ = [
     "Profile",
     "Slab",
     "Slits",
+    "Tabulated",
     "__version__",
     "beam_measures",
     "beam_width",
@@ -88,7 +95,10 @@ __all__ = [
     "lmmd_emt",
     "lmmd_emt_slab",
     "load",
+    "material",
+    "materials",
     "plot",
+    "power_law",
     "provenance",
     "read_comsol",
     "save",

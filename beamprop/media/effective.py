@@ -23,23 +23,6 @@ from .fluids import Fluid, FluidValues
 from .structures import Cell, Layer, Membrane, Slab
 
 
-@dataclass(frozen=True)
-class Tabulated:
-    """A property tabulated at real frequencies [Hz]: linear between them, refused outside."""
-
-    frequency: tuple[float, ...]
-    values: tuple[complex, ...]
-
-    def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        f, known = real_or_complex(frequency), np.asarray(self.frequency)
-        if np.iscomplexobj(f):
-            raise validate.refuse("frequency", "real frequencies of a tabulated medium", f)
-        if np.any((f < known[0]) | (f > known[-1])):
-            raise ValueError(f"frequency: this medium is known from {known[0]} to {known[-1]} Hz only, got {f}")
-        values = np.asarray(self.values)
-        return np.interp(f, known, values.real) + 1j * np.interp(f, known, values.imag)
-
-
 def _layers(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, list[FluidValues]]:
     validate.instance(cell, Cell, "cell")
     layers = [layer for layer in cell.layers if isinstance(layer, Layer)]
@@ -107,7 +90,7 @@ class LmmdJump:
 
 
 #: The functions of frequency made here: a file records them by their cell, not as a table.
-FUNCTIONS: tuple[type, ...] = (Tabulated, CellMean, LmmdDensity, LmmdJump)
+FUNCTIONS: tuple[type, ...] = (CellMean, LmmdDensity, LmmdJump)
 
 
 def _simplify(cell: Cell, function: Any) -> Any:
