@@ -32,12 +32,14 @@ if TYPE_CHECKING:
     from .io.datasets import provenance
     from .io.storage import load, save
     from .media.attenuation import power_law
-    from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
+    from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt, wood_mixture
     from .media.fluids import AIR, Fluid
     from .media.lmmd import lmmd_cell
     from .media.materials import material, materials
+    from .media.membranes import Membrane
+    from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
-    from .media.structures import Cell, Layer, Membrane, Slab
+    from .media.structures import Cell, Layer, Slab
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
@@ -46,10 +48,18 @@ _HOMES = {
     "media.attenuation": ("power_law",),
     "media.fluids": ("AIR", "Fluid"),
     "media.materials": ("material", "materials"),
+    "media.porous": (
+        "Gas",
+        "delany_bazley_miki",
+        "johnson_champoux_allard",
+        "narrow_slits",
+        "narrow_tubes",
+    ),
     "media.properties": ("Tabulated",),
-    "media.structures": ("Cell", "Layer", "Membrane", "Slab"),
+    "media.membranes": ("Membrane",),
+    "media.structures": ("Cell", "Layer", "Slab"),
     "media.lmmd": ("lmmd_cell",),
-    "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
+    "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
     "sources.gaussian": ("GaussianBeam",),
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
@@ -75,6 +85,7 @@ __all__ = [
     "AccuracyWarning",
     "Cell",
     "Fluid",
+    "Gas",
     "GaussianBeam",
     "Layer",
     "Membrane",
@@ -87,16 +98,20 @@ __all__ = [
     "beam_width",
     "bloch",
     "compare",
+    "delany_bazley_miki",
     "fem",
     "field",
     "fwhm",
     "guided_modes",
+    "johnson_champoux_allard",
     "lmmd_cell",
     "lmmd_emt",
     "lmmd_emt_slab",
     "load",
     "material",
     "materials",
+    "narrow_slits",
+    "narrow_tubes",
     "plot",
     "power_law",
     "provenance",
@@ -106,6 +121,7 @@ __all__ = [
     "scattering",
     "standard_emt",
     "to_grid",
+    "wood_mixture",
 ]
 
 

@@ -248,6 +248,61 @@ def test_gain_by_negative_attenuation():
         assert fluid.at(1e6).bulk_modulus.imag > 0
 
 
+# --- models -----------------------------------------------------------------------------------------------
+
+
+def jca(**changed):
+    usual = {
+        "flow_resistivity": 1e4,
+        "porosity": 0.97,
+        "tortuosity": 1.1,
+        "viscous_length": 1e-4,
+        "thermal_length": 2e-4,
+    }
+    return bp.johnson_champoux_allard(**(usual | changed))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        *[(lambda n=n: jca(**{n: 0}), f"^{n}: expected ") for n in ("flow_resistivity", "porosity", "viscous_length")],
+        (lambda: jca(porosity=1.2), "^porosity: expected a number above 0, of at most 1, got 1.2"),
+        (lambda: jca(tortuosity=0.5), "^tortuosity: expected a number of at least 1, got 0.5"),
+        (lambda: jca(gas="air"), "^gas: expected a Gas, got 'air'"),
+        (lambda: bp.Gas(viscosity=0), "^viscosity: expected a finite number above zero"),
+        (lambda: bp.Gas(heat_capacity_ratio=0.5), "^heat_capacity_ratio: expected a number of at least 1"),
+        (lambda: bp.delany_bazley_miki(-1), "^flow_resistivity: expected a finite number above zero"),
+        (
+            lambda: bp.delany_bazley_miki(1e4).at(99.0),
+            "^frequency: expected 100 to 10000 Hz, where delany_bazley.* got 99",
+        ),
+        (
+            lambda: bp.delany_bazley_miki(1e4).at(np.array([500, 2e4])),
+            "^frequency: expected 100 to 10000 Hz, .* got 20000",
+        ),
+        (lambda: bp.narrow_slits(0), "^width: expected a finite number above zero"),
+        (lambda: bp.narrow_slits(1e-3, 2.0), "^porosity: expected a number above 0, of at most 1, got 2"),
+        (lambda: bp.narrow_tubes("a"), "^radius: expected a real number, got 'a'"),
+        (lambda: bp.narrow_tubes(1e-3, gas=bp.AIR), "^gas: expected a Gas"),
+        (lambda: bp.wood_mixture((WATER, 0.5)), "^parts: expected shares of the volume that add up to 1, got 0.5"),
+        (lambda: bp.wood_mixture(WATER, 0.5), r"^parts: expected pairs \(Fluid, share of the volume\)"),
+        (lambda: bp.wood_mixture((3, 1.0)), "^parts: expected a Fluid, got 3"),
+        (lambda: bp.wood_mixture((bp.Fluid(1, 1e5, 2), 1.0)), "^parts: expected isotropic fluids, got Fluid"),
+        (
+            lambda: bp.wood_mixture((WATER, 1.1), (bp.AIR, -0.1)),
+            "^parts: expected a finite number above zero, got -0.1",
+        ),
+        (lambda: bp.Membrane.drude(0, 1.0), "^areal_density: expected a finite number above zero"),
+        (lambda: bp.Membrane.drude(1.0, 700.0, -1.0), "^linewidth: expected a number of at least 0, got -1"),
+        (lambda: bp.Membrane.lorentz(1.0, -5.0, 1.0), "^resonance_frequency: expected a finite number above zero"),
+        (lambda: bp.Membrane.lorentz(1.0, 5.0, 1.0).at(np.array([5.0])), "^areal_density: expected finite values"),
+    ],
+)
+def test_wrong_models(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
 # --- what files record ------------------------------------------------------------------------------------
 
 RECORDED = {
@@ -257,6 +312,11 @@ RECORDED = {
     "water": bp.material("water", temperature=30),
     "air": bp.material("air", humidity=20),
     "liver": bp.material("liver"),
+    "johnson_champoux_allard": jca(),
+    "delany_bazley_miki": bp.delany_bazley_miki(2e4),
+    "narrow_slits": bp.narrow_slits(1e-3, 0.5, bp.Gas(density=1.1)),
+    "narrow_tubes": bp.narrow_tubes(1e-3),
+    "wood_mixture": bp.wood_mixture((bp.material("water"), 0.9), (bp.AIR, 0.1)),
 }
 
 
@@ -264,7 +324,8 @@ RECORDED = {
 def test_provenance_rebuilds_the_medium(name):
     """The record makes an equal slab; a medium is hashable, and cannot be changed."""
     fluid = RECORDED[name]
-    slab = bp.Slab([bp.Layer(fluid, 0.1), bp.Membrane(0.1)], background=fluid)
+    sheets = bp.Membrane.drude(0.1, 3000.0, 10.0), bp.Membrane.lorentz(0.1, 2000.0, 0.2, 10.0)
+    slab = bp.Slab([bp.Layer(fluid, 0.1), *sheets], background=fluid)
     assert bp.provenance(bp.scattering(slab, [F, 2600.0], kx=1.0))["slab"] == slab
     assert len({fluid, RECORDED[name]}) == 1
     assert "object at 0x" not in repr(fluid)

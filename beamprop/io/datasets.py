@@ -17,10 +17,11 @@ import xarray as xr
 
 from .. import validate
 from .._version import __version__
-from ..media import air, attenuation, effective
+from ..media import air, attenuation, effective, membranes, porous
 from ..media.fluids import Fluid
+from ..media.membranes import Membrane
 from ..media.properties import Tabulated
-from ..media.structures import Cell, Layer, Membrane, Slab
+from ..media.structures import Cell, Layer, Slab
 from ..sources.base import Beam
 from ..sources.gaussian import GaussianBeam
 from ..sources.profile import Profile
@@ -43,6 +44,8 @@ _RECORDS: dict[str, type] = {
         *effective.FUNCTIONS,
         *attenuation.FUNCTIONS,
         *air.FUNCTIONS,
+        *membranes.FUNCTIONS,
+        *porous.FUNCTIONS,
     )
 }
 

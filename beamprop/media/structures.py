@@ -1,18 +1,16 @@
-"""What a user builds of fluids: layers, membranes, cells and slabs. Frozen records, checked when they are made."""
+"""What a user builds of fluids and membranes: layers, cells and slabs. Frozen records, checked when they are made."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from .. import validate
-from ..validate import as_complex, as_count, as_number
+from ..validate import as_count, as_number
 from .fluids import AIR, Fluid
-from .properties import Property, check_property, property_values
+from .membranes import Membrane
 
 
 @dataclass(frozen=True)
@@ -31,42 +29,6 @@ class Layer:
     def __post_init__(self) -> None:
         validate.instance(self.fluid, Fluid, "fluid")
         object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True, tiny=True))
-
-
-@dataclass(frozen=True)
-class Membrane:
-    """A surface without thickness that carries mass: p jumps by ``areal_density * q`` across it.
-
-    A limp membrane of `areal_density` kg/m2 (complex, or a function of frequency); the interface term of the
-    effective medium is one, with a negative value on one face.
-
-    Examples
-    --------
-    >>> sheet = bp.Slab([bp.Membrane(0.3), bp.Layer(bp.AIR, 0.01)])
-    >>> T = float(bp.scattering(sheet, 1000.0, angle=0).transmissivity)
-    >>> mass_law = 1 / (1 + (2 * np.pi * 1000.0 * 0.3 / (2 * 1.25 * 343)) ** 2)
-    >>> bool(np.isclose(T, mass_law))
-    True
-    """
-
-    areal_density: Property
-    active: bool = field(default=False, kw_only=True)
-    thickness = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "active", validate.flag(self.active, "active"))
-        if not callable(self.areal_density):
-            value = as_complex(self.areal_density, "areal_density")
-            object.__setattr__(self, "areal_density", value)
-            check_property(value, "areal_density", gain_sign=1, active=self.active)
-
-    def at(self, frequency: np.ndarray) -> np.ndarray:
-        """Areal density at frequencies [Hz], checked; gain is refused at real ones only, as in `Fluid.at`."""
-        values = property_values(self.areal_density, frequency, "areal_density")
-        if callable(self.areal_density):
-            active = self.active or np.iscomplexobj(frequency)
-            check_property(values, "areal_density", gain_sign=1, active=active)
-        return values
 
 
 def _checked_layer(layer: Any) -> Layer | Membrane:
