@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from .media.attenuation import power_law
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt, wood_mixture
     from .media.fluids import AIR, Fluid
+    from .media.hints import HintWarning
     from .media.lmmd import lmmd_cell
     from .media.materials import material, materials
     from .media.membranes import Membrane
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "media.attenuation": ("power_law",),
     "media.fluids": ("AIR", "Fluid"),
+    "media.hints": ("HintWarning",),
     "media.materials": ("material", "materials"),
     "media.porous": (
         "Gas",
@@ -87,6 +89,7 @@ __all__ = [
     "Fluid",
     "Gas",
     "GaussianBeam",
+    "HintWarning",
     "Layer",
     "Membrane",
     "Profile",

@@ -303,6 +303,68 @@ def test_wrong_models(make, message):
         make()
 
 
+# --- hints ------------------------------------------------------------------------------------------------
+
+ULTRASOUND = 1e6
+PLATE = bp.Slab.uniform(bp.material("water"), 1e-3)
+WIDE = bp.GaussianBeam(9.6, z0=-0.1)
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (
+            lambda: bp.Fluid(1.25, 343.0),
+            r"^bulk_modulus: 343 Pa looks like a sound speed, which Fluid.from_speed\(1.25, 343",
+        ),
+        (lambda: bp.Fluid(1000, 1500), "^bulk_modulus: 1500 Pa looks like a sound speed"),
+        (lambda: bp.Fluid(7850, 5960), "^bulk_modulus: 5960 Pa looks like a sound speed"),
+        (lambda: bp.lmmd_cell(eta=60), "^eta: 60 wavelengths a period; for 60 periods a wavelength give eta=1/60"),
+        (
+            lambda: bp.scattering(PLATE, ULTRASOUND, angle=0),
+            "^before, after: air, for none was given, around layers like",
+        ),
+        (lambda: bp.beam_width(PLATE, bp.GaussianBeam(0.01), ULTRASOUND, rtol=1e-3), "^before, after: air"),
+        (lambda: bp.beam_measures(PLATE, bp.GaussianBeam(0.01), ULTRASOUND, rtol=1e-3), "^before, after: air"),
+        (lambda: bp.field(PLATE, bp.GaussianBeam(0.01), ULTRASOUND, 0.0, 0.0, rtol=1e-3), "^before, after: air"),
+        (
+            lambda: bp.field(bp.Slab(CELL, 20), WIDE, F, np.linspace(-1.4, 1.4, 101), 0.1),
+            "^fwhm: 9.6 m is 70 wavelengths, and x spans 2.8 m: is it in metres",
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::RuntimeWarning", "ignore::beamprop.AccuracyWarning")
+def test_a_likely_slip_is_hinted_at(ask, message):
+    """One hint, at the line that the user wrote; the answer is given all the same."""
+    with pytest.warns(bp.HintWarning, match=message) as caught:
+        assert ask() is not None
+    hints = [w for w in caught if w.category is bp.HintWarning]
+    assert [w.filename for w in hints] == [__file__]
+
+
+def test_what_is_meant_is_not_hinted_at():
+    """Warnings are errors here: half-spaces that are given, audible frequencies, plates, soft media, gases of low pressure."""
+    water = bp.material("water", attenuation=0)
+    for sides in ({"background": bp.AIR}, {"background": water}, {"before": bp.AIR}, {"after": water}):
+        bp.scattering(bp.Slab.uniform(water, 1e-3, **sides), ULTRASOUND, angle=0)
+    bp.scattering(bp.Slab.uniform(water, 0.05), F, angle=0)
+    bp.scattering(bp.Slab([bp.Layer(bp.AIR, 1e-3), bp.Layer(water, 1e-3)]), ULTRASOUND, angle=0)
+    bp.scattering(bp.Slab.uniform(bp.material("steel"), 1e-3), ULTRASOUND, angle=0)
+    for density, modulus in (
+        (1.25, 1.4e5),
+        (1.0, 1.0),
+        (0.012, 1400.0),
+        (1000.0, 1e5),
+        (300.0, 3000.0),
+        (1.2, 343 - 5j),
+    ):
+        bp.Fluid(density, modulus)
+    bp.lmmd_cell(eta=0.5)
+    bp.lmmd_cell(eta=1.5)
+    bp.field(bp.Slab.uniform(bp.AIR, 0.1), WIDE, F, np.linspace(-10, 10, 101), 0.1, rtol=1e-4)
+    bp.field(bp.Slab.uniform(bp.AIR, 0.1), WIDE, F, 0.0, 0.1, rtol=1e-4)
+
+
 # --- what files record ------------------------------------------------------------------------------------
 
 RECORDED = {

@@ -89,6 +89,7 @@ def beam_measures(
     validate.instance(slab, Slab, "slab")
     validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
+    checks.warn_of_air(slab, f)
     angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
     half = None if window is None else validate.as_number(window, "window", positive=True)
     flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)

@@ -69,6 +69,7 @@ def beam_width(
     validate.instance(slab, Slab, "slab")
     validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
+    checks.warn_of_air(slab, f)
     angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)

@@ -9,7 +9,8 @@ import numpy as np
 
 from .. import memory, validate
 from ..media.fluids import Fluid
-from ..media.structures import Slab
+from ..media.hints import HintWarning
+from ..media.structures import UNSTATED, Layer, Slab
 from ..sources.base import Beam, sin_degrees
 
 
@@ -111,3 +112,34 @@ def warn_of_plane_waves(error: np.ndarray, frequency: np.ndarray, name: str, axi
             AccuracyWarning,
             stacklevel=3,
         )
+
+
+#: Ultrasound: where a half-space of air behind water reflects all, and who asks has seldom meant it [Hz].
+ULTRASOUND = 20e3
+#: Density [kg/m3] and sound speed [m/s] of water and what is like it.
+WATER_LIKE = ((850.0, 1200.0), (1300.0, 1700.0))
+
+
+def warn_of_air(slab: Slab, frequency: np.ndarray, stacklevel: int = 3) -> None:
+    """A hint that both half-spaces are air because none was given, around water at ultrasonic frequencies."""
+    if slab.before is not UNSTATED or slab.after is not UNSTATED or np.max(frequency) < ULTRASOUND:
+        return
+    faces = slab.segments[0][0].layers[0], slab.segments[-1][0].layers[-1]
+    if all(isinstance(layer, Layer) and _is_like_water(layer.fluid, frequency) for layer in faces):
+        said = "before, after: air, for none was given, around layers like water; background= sets both (bp.AIR if it is meant)"
+        warnings.warn(said, HintWarning, stacklevel=stacklevel)
+
+
+def _is_like_water(fluid: Fluid, frequency: np.ndarray) -> bool:
+    values = fluid.at(np.max(frequency))
+    density, speed = abs(complex(values.rho_z)), abs(complex(values.bulk_modulus / values.rho_z)) ** 0.5
+    return all(least <= v <= most for v, (least, most) in zip((density, speed), WATER_LIKE, strict=True))
+
+
+def warn_of_width(slab: Slab, beam: Beam, frequency: np.ndarray, x: np.ndarray) -> None:
+    """A hint that a beam of many wavelengths does not fit into the grid that its field is asked on."""
+    fwhm, span = getattr(beam, "fwhm", 0.0), float(np.ptp(x))
+    wavelengths = fwhm * float(np.max(np.abs(slab.before.wavenumber(np.max(frequency))))) / (2 * np.pi)
+    if x.size >= 100 and fwhm > 2 * span and 20 < wavelengths < np.inf:
+        said = f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and x spans {span:g} m: is it in metres?"
+        warnings.warn(said, HintWarning, stacklevel=4)

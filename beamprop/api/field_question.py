@@ -49,6 +49,8 @@ def checked_question(
     validate.word(boundary, "boundary", "open", "periodic")
     if np.min(zs) < beam.z0:
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+    checks.warn_of_air(slab, f, stacklevel=4)
+    checks.warn_of_width(slab, beam, f, xs)
     axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
     flat_f, flat_angles, flat_z, positions = (np.atleast_1d(v) for v in axes.values())
     source, origin = moved_to_origin(beam)

@@ -69,6 +69,7 @@ def scattering(
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
+    checks.warn_of_air(slab, f)
     name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)

@@ -11,6 +11,7 @@ from .. import validate
 from ..conventions import branch_wavenumber, real_or_complex
 from ..validate import as_complex
 from .attenuation import Attenuation, LossyModulus
+from .hints import warn_of_modulus
 from .properties import Property, check_property, property_values
 
 
@@ -69,6 +70,8 @@ class Fluid:
             if (v := getattr(self, n)) is not None and not callable(v)
         }
         self._check(self.active, **numbers)
+        if self.density_x is None:
+            warn_of_modulus(self.density, self.bulk_modulus)
 
     def _check(self, active: bool, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:
         if density is not None:

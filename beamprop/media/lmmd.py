@@ -9,6 +9,7 @@ import numpy as np
 from .. import memory, validate
 from ..validate import as_complex, as_count, as_number
 from .fluids import AIR, Fluid
+from .hints import warn_of_eta
 from .structures import Cell, Layer
 
 
@@ -81,4 +82,5 @@ def lmmd_cell(
     validate.within(density[density != 0], "rho_m, delta_rho, eta")
     thickness = eta * 2 * np.pi / k0 / n_layers
     validate.within(thickness, "eta")
+    warn_of_eta(eta)
     return Cell(tuple(Layer(Fluid(rho, complex(values.bulk_modulus)), thickness) for rho in density))
