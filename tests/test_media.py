@@ -115,26 +115,26 @@ def test_a_table_from_pandas():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("thickness,material\n1,unobtainium\n", "name in row 1: expected a material of beamprop.materials()"),
-        ("thickness,material\n1,steel\n1,stel\n", "name in row 2: expected a material .*, such as 'steel', got 'stel'"),
-        ("thickness,material,density\n1,steel,7\n", "density in row 1: expected an empty cell beside material"),
-        ("thickness (mm),material\nabc,steel\n", r"thickness \(mm\) in row 1: expected a number, got 'abc'"),
-        ("thickness,material\n1,air\n-2,air\n", "thickness in row 2: expected a finite number above zero, got -2.0"),
-        ("material\nair\n", "thickness in row 1: expected a number, got an empty cell or no such column"),
-        ("thickness,density\n1,2\n", "density in row 1: expected material, or density and one of .*, got density"),
+        ("thickness,material\n1,unobtainium\n", "name, row 1: expected a material of beamprop.materials()"),
+        ("thickness,material\n1,steel\n1,stel\n", "name, row 2: expected a material .*, such as 'steel', got 'stel'"),
+        ("thickness,material,density\n1,steel,7\n", "density, row 1: expected an empty cell beside material"),
+        ("thickness (mm),material\nabc,steel\n", "thickness, row 1: expected a number, got 'abc'"),
+        ("thickness,material\n1,air\n-2,air\n", "thickness, row 2: expected a finite number above zero, got -2.0"),
+        ("material\nair\n", "thickness, row 1: expected a number, got an empty cell or no such column"),
+        ("thickness,density\n1,2\n", "density, row 1: expected material, or density and one of .*, got density"),
         (
             "thickness,density,sound_speed,bulk_modulus\n1,2,3,4\n",
-            "density in row 1: expected material, or .*, got den",
+            "density, row 1: expected material, or .*, got den",
         ),
-        ("thickness,density,bulk_modulus,attenuation\n1,2,4,4\n", "attenuation in row 1: expected an empty cell besid"),
+        ("thickness,density,bulk_modulus,attenuation\n1,2,4,4\n", "attenuation, row 1: expected an empty cell besid"),
         (
             "thickness,density,sound_speed,exponent\n1,2,4,4\n",
-            "attenuation in row 1: expected a number beside exponent",
+            "attenuation, row 1: expected a number beside exponent",
         ),
-        ("thickness,density,sound_speed\n1,2,0\n", "sound_speed in row 1: expected a finite number other than zero"),
+        ("thickness,density,sound_speed\n1,2,0\n", "sound_speed, row 1: expected a finite number other than zero"),
         (
             "thickness,areal_density\n1,2\n",
-            "thickness in row 1: expected 0 or nothing beside an areal density, got '1'",
+            "thickness, row 1: expected 0 or nothing beside an areal density, got '1'",
         ),
         (
             "thickness,temperature\n1,2\n",

@@ -115,7 +115,8 @@ class LossyModulus:
     def __call__(self, frequency: Any) -> np.ndarray:
         f = real_or_complex(frequency)
         omega = 2 * np.pi * f
-        return self.density * (omega / (omega / self.sound_speed + self._excess(f))) ** 2
+        with np.errstate(all="ignore"):  # what is not finite then is refused by name
+            return self.density * (omega / (omega / self.sound_speed + self._excess(f))) ** 2
 
     def _excess(self, f: np.ndarray) -> np.ndarray:
         if isinstance(self.attenuation, PowerLaw):

@@ -53,8 +53,10 @@ def _crc(
 
 def _mast(density: float, sound_speed: float, db_per_cm: float | None = None) -> Material:
     """A soft tissue; its attenuation is given at 1 MHz, and is taken as proportional to the frequency."""
-    law = None if db_per_cm is None else PowerLaw(db_per_cm, 1e6, 1.0)
-    return Material(density, sound_speed, MAST, None, law, "attenuation at 1 MHz, taken as proportional to frequency")
+    if db_per_cm is None:
+        return Material(density, sound_speed, MAST, conditions="soft tissue")
+    law = PowerLaw(db_per_cm, 1e6, 1.0)
+    return Material(density, sound_speed, MAST, None, law, "soft tissue, attenuation proportional to frequency")
 
 
 TABLE: dict[str, Material] = {
@@ -88,7 +90,7 @@ TABLE: dict[str, Material] = {
     "mercury": _crc(13500, 1450, at="25 Celsius"),
     "sea water": _crc(1025, 1531, at="25 Celsius"),
     "blood": _mast(1060, 1584),
-    "brain": _mast(1040, 1560, 0.60),
+    "brain": _mast(1040, 1560),
     "breast": _mast(1020, 1510, 0.75),
     "fat": _mast(950, 1478),
     "heart": _mast(1060, 1576, 0.52),

@@ -25,7 +25,8 @@ class DrudeMass:
 
     def __call__(self, frequency: Any) -> np.ndarray:
         f = real_or_complex(frequency)
-        return self.areal_density * (1 - self.cutoff_frequency**2 / (f * (f + 1j * self.linewidth)))
+        with np.errstate(all="ignore"):  # what is not finite then is refused by name
+            return self.areal_density * (1 - self.cutoff_frequency**2 / (f * (f + 1j * self.linewidth)))
 
 
 @dataclass(frozen=True)

@@ -135,6 +135,10 @@ class DelanyBazleyMiki:
         return 1 + (0.070 + 0.107j) * share**-0.632, 1 + (0.109 + 0.160j) * share**-0.618
 
 
+#: From so many boundary layers on a channel's mean is that of its walls apart, 1e-12 beside it; Bessel functions end at 1e9.
+WIDE = 1e6
+
+
 @dataclass(frozen=True)
 class Channels:
     """The model behind `narrow_slits` (half a slit's width for the size) and `narrow_tubes` (the radius)."""
@@ -158,7 +162,9 @@ class Channels:
         """1 - tanh(s)/s in a slit, 1 - 2 I1(s)/(s I0(s)) in a tube: ratios of Bessel functions, which lose no digits."""
         s = self.size * np.sqrt(-2j * np.pi * frequency * prandtl * self.gas.density / self.gas.viscosity)
         order = 0.0 if self.round else -0.5
-        return ive(order + 2, s) / ive(order, s)
+        wide = np.abs(s) > WIDE
+        near = np.where(wide, 1.0, s)
+        return np.where(wide, 1 - 2 * (order + 1) / s, ive(order + 2, near) / ive(order, near))
 
 
 @dataclass(frozen=True)
@@ -169,7 +175,8 @@ class OfModel:
     name: str
 
     def __call__(self, frequency: Any) -> np.ndarray:
-        return getattr(self.model, self.name)(real_or_complex(frequency))
+        with np.errstate(all="ignore"):  # what is not finite then is refused by the name of the property
+            return getattr(self.model, self.name)(real_or_complex(frequency))
 
 
 def _fluid(model: JohnsonChampouxAllard | DelanyBazleyMiki | Channels, density_x: float | None = None) -> Fluid:

@@ -35,8 +35,8 @@ COLUMNS: dict[str, dict[str, float]] = {
     "material": {},
 }
 
-#: A row: the columns that it fills, each with its header as written and its cell.
-Row = Mapping[str, tuple[str, float, Any]]
+#: A row: the columns that it fills, each with the SI value of its unit and its cell.
+Row = Mapping[str, tuple[float, Any]]
 
 
 def layers_from_table(table: Any) -> tuple[Layer | Membrane, ...]:
@@ -54,9 +54,7 @@ def layers_from_table(table: Any) -> tuple[Layer | Membrane, ...]:
         if len(cells) != len(header):
             raise ValueError(f"table: expected {len(header)} cells in row {number}, as in the header, got {len(cells)}")
         row: Row = {
-            name: (head, unit, cell)
-            for head, (name, unit), cell in zip(header, columns, cells, strict=True)
-            if not _is_empty(cell)
+            name: (unit, cell) for (name, unit), cell in zip(columns, cells, strict=True) if not _is_empty(cell)
         }
         with _row_named(number):
             layers.append(_layer(row))
@@ -106,7 +104,7 @@ def _row_named(number: int) -> Iterator[None]:
         yield
     except ValueError as error:
         name, colon, said = str(error).partition(": ")
-        raise ValueError(f"{name} in row {number}: {said}" if colon else f"row {number}: {error}") from None
+        raise ValueError(f"{name}, row {number}: {said}" if colon else f"row {number}: {error}") from None
 
 
 def _layer(row: Row) -> Layer | Membrane:
@@ -114,7 +112,7 @@ def _layer(row: Row) -> Layer | Membrane:
     if "areal_density" in given:
         _only(given, "areal_density", "thickness")
         if "thickness" in given and _number(row, "thickness") != 0:
-            raise validate.refuse(row["thickness"][0], "0 or nothing beside an areal density", row["thickness"][2])
+            raise validate.refuse("thickness", "0 or nothing beside an areal density", row["thickness"][1])
         return Membrane(_number(row, "areal_density"))
     if "thickness" not in given:
         raise ValueError("thickness: expected a number, got an empty cell or no such column")
@@ -125,7 +123,7 @@ def _fluid(row: Row) -> Fluid:
     given = set(row)
     if "material" in given:
         _only(given, "material", "thickness")
-        return material(row["material"][2])
+        return material(row["material"][1])
     if "density" not in given or ("sound_speed" in given) == ("bulk_modulus" in given):
         came = ", ".join(name for name in row if name != "thickness") or "none of them"
         raise ValueError(f"density: expected material, or density and one of sound_speed and bulk_modulus, got {came}")
@@ -154,17 +152,17 @@ def _only(given: set[str], column: str, *beside: str) -> None:
 
 def _number(row: Row, name: str) -> complex:
     """A cell as a number in SI units; complex ones as 2+0.5j, or with i."""
-    header, unit, cell = row[name]
+    unit, cell = row[name]
     if isinstance(cell, str):
         try:
             return complex(cell.replace(" ", "").replace("i", "j")) * unit
         except ValueError:
-            raise validate.refuse(header, "a number", cell) from None
-    return validate.as_complex(cell, header) * unit
+            raise validate.refuse(name, "a number", cell) from None
+    return validate.as_complex(cell, name) * unit
 
 
 def _real(row: Row, name: str) -> float:
     number = _number(row, name)
     if number.imag != 0:
-        raise validate.refuse(row[name][0], "a real number", row[name][2])
+        raise validate.refuse(name, "a real number", row[name][1])
     return number.real
