@@ -27,8 +27,10 @@ def table() -> str:
 def _loss(name: str) -> str:
     """dB/cm at 1 MHz; of air at 1 kHz, in dB/km."""
     frequency, length, unit = (1e3, 1e3, " dB/km at 1 kHz") if name == "air" else (1e6, 1e-2, " at 1 MHz")
-    decibels = 20 / math.log(10) * length * float(bp.material(name).wavenumber(frequency).imag)
-    return f"{decibels:.3g}{unit}" if decibels else ""
+    if bp.materials()[name].attenuation is None:
+        return ""
+    nepers = float(bp.material(name, attenuation=True).wavenumber(frequency).imag) * length
+    return f"{20 / math.log(10) * nepers:.3g}{unit}"
 
 
 if __name__ == "__main__":

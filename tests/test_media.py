@@ -75,6 +75,7 @@ STACK = (
     bp.Membrane(0.2),
     bp.Layer(bp.material("steel"), 1e-3),
     bp.Layer(bp.Fluid.from_speed(1060.0, 1595.0, attenuation=bp.power_law(0.5, 1e6, 1.1)), 1e-2),
+    bp.Layer(bp.material("acrylic", attenuation=12.0), 1e-2),
 )
 SHEET = """# a stack, from the near side on
 thickness (mm),density,sound_speed [km/s],bulk_modulus_kPa,attenuation (Np/m),areal_density [g/m²],material,reference_frequency_MHz,exponent
@@ -85,6 +86,7 @@ thickness (mm),density,sound_speed [km/s],bulk_modulus_kPa,attenuation (Np/m),ar
 ,,,,,200,,,
 1,,,,,,Steel,,
 10,1060,1.595,,5.7564627324851145,,,1,1.1
+10,,,,12,,acrylic,,
 """
 
 
@@ -109,6 +111,7 @@ def test_a_table_from_pandas():
     frame = pd.DataFrame(
         [{"thickness": 1e-3, "material": "steel"}, {"thickness": 0.01, "density": 1.25, "sound_speed": 343.0}]
     )
+    assert bp.Slab.from_table(frame) == bp.Slab.from_table(frame.convert_dtypes())  # which knows NA
     assert bp.Slab.from_table(frame) == bp.Slab([bp.Layer(bp.material("steel"), 1e-3), bp.Layer(bp.AIR, 0.01)])
 
 
@@ -171,14 +174,15 @@ def test_what_is_no_table(tmp_path):
 @pytest.mark.parametrize("name", bp.materials())
 def test_every_material_is_a_fluid_with_its_source(name):
     """With the numbers of the table at a frequency where it may be used."""
-    row, fluid = bp.materials()[name], bp.material(name)
+    row = bp.materials()[name]
+    fluid = bp.material(name, attenuation=row.attenuation is not None)
     assert len(row.source) > 20
     assert row.conditions
     k = fluid.wavenumber(1e5)
     assert 2 * np.pi * 1e5 / k.real == pytest.approx(row.sound_speed, rel=1e-6)
     assert fluid.density == row.density
     assert k.imag == pytest.approx(0.0 if row.attenuation is None else float(row.attenuation(1e5)), rel=1e-9)
-    assert not bp.material(name, attenuation=0).dispersive
+    assert not bp.material(name).dispersive
 
 
 def test_names_of_materials():
@@ -201,6 +205,11 @@ def test_names_of_materials():
         ({"name": "water", "temperature": 120}, r"^temperature: expected 0 to 95 Celsius, .*, got 120"),
         ({"name": "air", "temperature": -5}, r"^temperature: expected 0 to 30 Celsius, .*, got -5"),
         ({"name": "air", "humidity": 120}, r"^humidity: expected 0 to 100 %, .*, got 120"),
+        (
+            {"name": "steel", "attenuation": True},
+            "^attenuation: expected a number or a function, for the table has none of s",
+        ),
+        ({"name": "steel", "attenuation": "yes"}, "^attenuation: expected a real number, got 'yes'"),
         ({"name": "air", "pressure": 1013.25}, r"^pressure: expected 75000 to 102000 Pa, .*, got 1013"),
     ],
 )
@@ -229,6 +238,12 @@ def test_wrong_materials(arguments, message):
             "^attenuation: expected values of at least 0 Np/m, got -1e",
         ),
         (lambda: bp.Fluid.from_speed(1e3, 1500, lambda f: 1.0).at(np.ones(2)), "^attenuation: expected a function"),
+        (
+            lambda: bp.Fluid.from_speed(1e3, 1500, bp.power_law(100, 1e6, 1.0, dispersion=True)).at(
+                np.array([1e6, 1e12])
+            ),
+            r"^attenuation: expected a dispersion that leaves a phase velocity above zero, got PowerLaw.* at 1e\+12 Hz",
+        ),
         (lambda: bp.Tabulated([2.0, 1.0], [1, 1]), "^frequency: expected a 1-D array of finite, strictly increasing"),
         (lambda: bp.Tabulated([-2.0, 1.0], [1, 1]), "^frequency: expected frequencies above zero, got -2"),
         (lambda: bp.Tabulated([1.0, 2.0], [1, 1, 1]), "^values: expected one for each of 2 frequencies, got shape"),
@@ -246,6 +261,13 @@ def test_gain_by_negative_attenuation():
     for attenuation in (-1.0, lambda f: -1.0 + 0 * f):
         fluid = bp.Fluid.from_speed(1e3, 1500.0, attenuation, active=True)
         assert fluid.at(1e6).bulk_modulus.imag > 0
+
+
+def test_energies_in_a_material():
+    """Half-spaces by name are lossless unless asked for, so that shares of energy have a meaning."""
+    slab = bp.Slab.uniform(bp.material("liver", attenuation=True), 0.01, background=bp.material("water"))
+    ds = bp.scattering(slab, 1e6, angle=[0, 30])
+    assert np.all(ds.absorption > 0.05)
 
 
 # --- models -----------------------------------------------------------------------------------------------
@@ -344,7 +366,7 @@ def test_a_likely_slip_is_hinted_at(ask, message):
 
 def test_what_is_meant_is_not_hinted_at():
     """Warnings are errors here: half-spaces that are given, audible frequencies, plates, soft media, gases of low pressure."""
-    water = bp.material("water", attenuation=0)
+    water = bp.material("water")
     for sides in ({"background": bp.AIR}, {"background": water}, {"before": bp.AIR}, {"after": water}):
         bp.scattering(bp.Slab.uniform(water, 1e-3, **sides), ULTRASOUND, angle=0)
     bp.scattering(bp.Slab.uniform(water, 0.05), F, angle=0)
@@ -371,14 +393,14 @@ RECORDED = {
     "power law": bp.Fluid.from_speed(1e3, 1500.0, bp.power_law(0.5, 1e6, 1.1, dispersion=True)),
     "constant attenuation": bp.Fluid.from_speed(1e3, 1500.0, 5.0),
     "tabulated attenuation": bp.Fluid.from_speed(1e3, 1500.0, bp.Tabulated([1e3, 1e4], [1.0, 2.0])),
-    "water": bp.material("water", temperature=30),
-    "air": bp.material("air", humidity=20),
-    "liver": bp.material("liver"),
+    "water": bp.material("water", temperature=30, attenuation=True),
+    "air": bp.material("air", humidity=20, attenuation=True),
+    "liver": bp.material("liver", attenuation=True),
     "johnson_champoux_allard": jca(),
     "delany_bazley_miki": bp.delany_bazley_miki(2e4),
     "narrow_slits": bp.narrow_slits(1e-3, 0.5, bp.Gas(density=1.1)),
     "narrow_tubes": bp.narrow_tubes(1e-3),
-    "wood_mixture": bp.wood_mixture((bp.material("water"), 0.9), (bp.AIR, 0.1)),
+    "wood_mixture": bp.wood_mixture((bp.material("water", attenuation=True), 0.9), (bp.AIR, 0.1)),
 }
 
 
@@ -395,3 +417,13 @@ def test_provenance_rebuilds_the_medium(name):
         if dataclasses.is_dataclass(part):
             with pytest.raises(dataclasses.FrozenInstanceError):
                 part.density = 1.0
+
+
+@pytest.mark.parametrize("name", sorted(set(RECORDED) - {"tabulated attenuation"}))
+def test_media_are_analytic_in_frequency(name):
+    """The derivatives along the real and the imaginary axis agree, at a complex frequency: so do kernels take them."""
+    fluid, f, step = RECORDED[name], 3000.0 + 200.0j, 0.5
+    for prop in ("rho_z", "bulk_modulus"):
+        at = {d: getattr(fluid.at(np.array(f + d)), prop) for d in (step, -step, 1j * step, -1j * step)}
+        along, across = at[step] - at[-step], (at[1j * step] - at[-1j * step]) / 1j
+        assert abs(along - across) <= 1e-4 * abs(along) + 1e-13 * abs(at[step])

@@ -116,7 +116,13 @@ class LossyModulus:
         f = real_or_complex(frequency)
         omega = 2 * np.pi * f
         with np.errstate(all="ignore"):  # what is not finite then is refused by name
-            return self.density * (omega / (omega / self.sound_speed + self._excess(f))) ** 2
+            k = omega / self.sound_speed + self._excess(f)
+            if not np.iscomplexobj(f) and np.any(k.real <= 0):
+                raise ValueError(
+                    f"attenuation: expected a dispersion that leaves a phase velocity above zero, got {self.attenuation!r} "
+                    f"at {np.atleast_1d(f)[np.atleast_1d(k.real <= 0)][0]:g} Hz"
+                )
+            return self.density * (omega / k) ** 2
 
     def _excess(self, f: np.ndarray) -> np.ndarray:
         if isinstance(self.attenuation, PowerLaw):

@@ -138,7 +138,7 @@ def wood_mixture(*parts: tuple[Fluid, float]) -> Fluid:
 
     Examples
     --------
-    >>> water = bp.material("water", attenuation=0)
+    >>> water = bp.material("water")
     >>> bubbly = bp.wood_mixture((water, 0.99), (bp.AIR, 0.01))
     >>> round(float(2 * np.pi * 100 / bubbly.wavenumber(100.0).real), 1)  # m/s, far below that of both
     121.6

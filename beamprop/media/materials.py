@@ -124,7 +124,7 @@ def material(
     temperature: float | None = None,
     humidity: float | None = None,
     pressure: float | None = None,
-    attenuation: Attenuation | None = None,
+    attenuation: Attenuation | bool = False,
 ) -> Fluid:
     """A fluid by the name of its material.
 
@@ -140,13 +140,14 @@ def material(
         Relative, of air; 50.
     pressure : float, optional; Pa
         Of air, 75 000 to 102 000; 101 325.
-    attenuation : float or function of frequency, optional; Np/m
-        In place of the table's own: 0 for a lossless medium.
+    attenuation : bool, float, or function of frequency; Np/m
+        True for that of the table; otherwise lossless, as a half-space has to be for shares of energy, or what is given.
 
     Raises
     ------
     ValueError
-        An unknown name, a condition that the material does not take, or one outside of its range.
+        An unknown name, a condition that the material does not take, one outside of its range, or an attenuation that the
+        table does not have.
 
     Sources: air by CIPM-2007 (density), O. Cramer (1993, speed) and ISO 9613-1 (attenuation); water by G. S. Kell (1975, density),
     W. Marczak (1997, speed) and R. E. Francois and G. R. Garrison (1982, attenuation); those of the others are told by
@@ -159,6 +160,8 @@ def material(
     >>> round(float(2 * np.pi * 1e6 / k.real), 1)  # m/s
     1496.7
     >>> plate = bp.Slab.uniform(bp.material("steel"), 2e-3, background=water)
+    >>> round(float(bp.material("liver", attenuation=True).wavenumber(1e6).imag), 3)  # Np/m, of 0.5 dB/cm
+    5.756
     """
     if not isinstance(name, str):
         raise validate.refuse("name", "the name of a material", name)
@@ -174,8 +177,13 @@ def material(
             raise validate.refuse(given, f"nothing, for {key} is known at {materials()[key].conditions} only", value)
     if row is None:
         row = _air(**conditions) if key == "air" else _water(**conditions)
-    loss = row.attenuation if attenuation is None else attenuation
-    return Fluid.from_speed(row.density, row.sound_speed, 0.0 if loss is None else loss)
+    if attenuation is True:
+        attenuation = row.attenuation if row.attenuation is not None else _no_attenuation(key)
+    return Fluid.from_speed(row.density, row.sound_speed, 0.0 if attenuation is False else attenuation)
+
+
+def _no_attenuation(key: str) -> Attenuation:
+    raise validate.refuse("attenuation", f"a number or a function, for the table has none of {key}", True)
 
 
 def _row(key: str, name: str) -> Material:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -63,7 +62,8 @@ def layers_from_table(table: Any) -> tuple[Layer | Membrane, ...]:
 
 def _from_frame(frame: Any) -> tuple[list[str], list[list[Any]]]:
     header = [str(name) for name in frame.columns]
-    return header, [list(record) for record in frame.itertuples(index=False, name=None)]
+    cells = frame.astype(object).where(frame.notna(), None)  # pandas has an NA that equals nothing
+    return header, [list(record) for record in cells.itertuples(index=False, name=None)]
 
 
 def _from_file(path: Any) -> tuple[list[str], list[list[Any]]]:
@@ -94,7 +94,7 @@ def _column(header: str) -> tuple[str, float]:
 
 
 def _is_empty(cell: Any) -> bool:
-    return cell is None or cell == "" or (isinstance(cell, float) and math.isnan(cell))
+    return cell is None or cell == ""
 
 
 @contextmanager
@@ -122,8 +122,8 @@ def _layer(row: Row) -> Layer | Membrane:
 def _fluid(row: Row) -> Fluid:
     given = set(row)
     if "material" in given:
-        _only(given, "material", "thickness")
-        return material(row["material"][1])
+        _only(given, "material", "thickness", "attenuation", "reference_frequency", "exponent")
+        return material(row["material"][1], attenuation=_attenuation(row))
     if "density" not in given or ("sound_speed" in given) == ("bulk_modulus" in given):
         came = ", ".join(name for name in row if name != "thickness") or "none of them"
         raise ValueError(f"density: expected material, or density and one of sound_speed and bulk_modulus, got {came}")
