@@ -64,7 +64,7 @@ class Air:
         return speed - 2.835149 * x**2 - 2.15e-13 * p**2 + 29.179762 * c**2 + 0.000486 * x * p * c
 
     def __call__(self, frequency: Any) -> np.ndarray:
-        """Attenuation [Np/m] at frequencies [Hz]: ISO 9613-1, Eqs. (3) to (5), whose range ends at 10 MHz/atm."""
+        """Attenuation [Np/m] at frequencies [Hz]: ISO 9613-1, whose range is 40 Hz to 1 MHz at one atmosphere."""
         f = real_or_complex(frequency)
         T, p = (self.temperature + KELVIN) / 293.15, self.pressure / 101325
         saturation = 10 ** (-6.8346 * (273.16 / (T * 293.15)) ** 1.261 + 4.6151)
