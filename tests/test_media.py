@@ -385,6 +385,8 @@ def test_what_is_meant_is_not_hinted_at():
     bp.lmmd_cell(eta=1.5)
     bp.field(bp.Slab.uniform(bp.AIR, 0.1), WIDE, F, np.linspace(-10, 10, 101), 0.1, rtol=1e-4)
     bp.field(bp.Slab.uniform(bp.AIR, 0.1), WIDE, F, 0.0, 0.1, rtol=1e-4)
+    closely = np.linspace(-1e-3, 1e-3, 101)  # into the middle of a beam of 34 wavelengths
+    bp.field(bp.Slab.interface(water, water), bp.GaussianBeam(0.05), ULTRASOUND, closely, 0.0, rtol=1e-4)
 
 
 # --- what files record ------------------------------------------------------------------------------------

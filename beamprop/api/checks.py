@@ -140,6 +140,6 @@ def warn_of_width(slab: Slab, beam: Beam, frequency: np.ndarray, x: np.ndarray) 
     """A hint that a beam of many wavelengths does not fit into the grid that its field is asked on."""
     fwhm, span = getattr(beam, "fwhm", 0.0), float(np.ptp(x))
     wavelengths = fwhm * float(np.max(np.abs(slab.before.wavenumber(np.max(frequency))))) / (2 * np.pi)
-    if x.size >= 100 and fwhm > 2 * span and 20 < wavelengths < np.inf:
+    if fwhm >= 1 and x.size >= 100 and fwhm > 2 * span and 20 < wavelengths < np.inf:
         said = f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and x spans {span:g} m: is it in metres?"
         warnings.warn(said, HintWarning, stacklevel=4)
