@@ -10,6 +10,8 @@ from . import validate
 
 #: What a user may give: whether to show a bar, or a function that wraps the items of a loop (`tqdm.tqdm`, say).
 Progress = bool | Callable[[Iterable[Any]], Iterable[Any]]
+#: Work that ends sooner shows no bar [s]: one would only flicker.
+SHOWN_AFTER = 1.0
 
 
 def watched(progress: Progress, items: Iterable[Any], what: str) -> Iterable[Any]:
@@ -18,7 +20,7 @@ def watched(progress: Progress, items: Iterable[Any], what: str) -> Iterable[Any
     Parameters
     ----------
     progress : bool or function
-        True: a bar on stderr, if the work takes more than a second. False: nothing. A function wraps the items.
+        True: a bar on stderr, if the work takes more than a second (`SHOWN_AFTER`). False: nothing. A function wraps the items.
     items : iterable, of known length where a bar is to say how far it is
     what : str
         What the bar is called.
@@ -34,7 +36,7 @@ def watched(progress: Progress, items: Iterable[Any], what: str) -> Iterable[Any
         return items
     from tqdm import tqdm
 
-    return tqdm(items, desc=what, delay=1.0, file=sys.stderr, leave=False)
+    return tqdm(items, desc=what, delay=SHOWN_AFTER, file=sys.stderr, leave=False)
 
 
 class Steps:

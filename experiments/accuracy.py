@@ -14,10 +14,10 @@ from __future__ import annotations
 from accuracy_study.cases.numbering import CASES, make_case
 from accuracy_study.cases.slabs import SLABS
 from accuracy_study.study.command import main
-from accuracy_study.study.comparison import judge
+from accuracy_study.study.comparison import compare_with_truth
 from accuracy_study.study.limit import limiting_absorption
 
-__all__ = ["CASES", "SLABS", "judge", "limiting_absorption", "make_case"]
+__all__ = ["CASES", "SLABS", "compare_with_truth", "limiting_absorption", "make_case"]
 
 if __name__ == "__main__":
     main(__doc__)

@@ -44,14 +44,14 @@ class Statement:
 
     figure: str
     stated: str
-    found: str
+    computed: str
     holds: bool
 
 
 def table(rows: Iterable[Statement]) -> str:
     """The statements as a Markdown table."""
     lines = ["| figure | what the paper states | what we get | holds? |", "|---|---|---|---|"]
-    lines += [f"| {r.figure} | {r.stated} | {r.found} | {'yes' if r.holds else 'NO'} |" for r in rows]
+    lines += [f"| {r.figure} | {r.stated} | {r.computed} | {'yes' if r.holds else 'NO'} |" for r in rows]
     return "\n".join(lines)
 
 

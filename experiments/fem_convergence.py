@@ -72,10 +72,10 @@ def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     titles = {"paper": "the paper's slab, lossy, 45°", "thick": "two thick layers, one of negative density"}
     for ax, (name, ds) in zip(axes, data.items(), strict=True):
         for order, rate, marker in zip(ds.order.values, rates(ds), "os^D", strict=True):
-            one = ds.sel(order=order)
-            line = ax.loglog(one.h, one.error, marker=marker, ms=4, label=f"order {order}: rate {rate:.2f}")[0]
-            guide = one.error[-1] * (one.h / one.h[-1]) ** (order + 1)
-            ax.loglog(one.h, guide, ":", lw=0.8, color=line.get_color())
+            h, error = (ds[name].sel(order=order) for name in ("h", "error"))
+            line = ax.loglog(h, error, marker=marker, ms=4, label=f"order {order}: rate {rate:.2f}")[0]
+            guide = error[-1] * (h / h[-1]) ** (order + 1)
+            ax.loglog(h, guide, ":", lw=0.8, color=line.get_color())
         ax.set(title=titles[name], xlabel="element width / wavelength", xticks=(0.03, 0.05, 0.1, 0.2, 0.5))
         ax.xaxis.set_major_formatter("{x:g}")
         ax.xaxis.set_minor_formatter("")
@@ -89,9 +89,9 @@ def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
     """Measured rates beside order + 1."""
     rows = []
     for name, ds in data.items():
-        found = rates(ds)
-        text = ", ".join(f"{rate:.2f}" for rate in found)
-        holds = bool(np.all(np.abs(found - ds.order.values - 1) < 0.3))
+        measured = rates(ds)
+        text = ", ".join(f"{rate:.2f}" for rate in measured)
+        holds = bool(np.all(np.abs(measured - ds.order.values - 1) < 0.3))
         rows.append(Statement(f"FEM, {name}", "rates 2, 3, 4, 5 for orders 1 to 4, within 0.3", text, holds))
     return rows
 

@@ -6,7 +6,7 @@
 
 Every case is made from its number. An outcome is good if it is an answer without NaN or infinity (or with a warning, or where
 they are documented), or a ValueError that names an argument. Bad are: other errors, warnings of NumPy that leak, values that are not
-finite and not announced, more than SECONDS of the processor, more than MEMORY bytes, and the end of the process.
+finite and not warned of, more than SECONDS of the processor, more than MEMORY bytes, and the end of the process.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def outcome(name: str, ask: Callable[[], Any]) -> tuple[str, str]:
 
 
 def ask_all(kind: str, first: int, last: int) -> Iterator[dict[str, Any]]:
-    """Outcomes of some cases, within limits of time and memory; each is announced before it is asked."""
+    """Outcomes of some cases, within limits of time and memory; each prints its number before it begins."""
     import matplotlib
 
     matplotlib.use("agg")
@@ -114,7 +114,7 @@ def ask_all(kind: str, first: int, last: int) -> Iterator[dict[str, Any]]:
 
     signal.signal(signal.SIGPROF, _out_of_time)
     for number in range(first, last):
-        yield {"asked": number}
+        yield {"begun": number}
         for name, ask in CASES[kind](number):
             signal.setitimer(signal.ITIMER_PROF, SECONDS)  # of the processor: others may be busy on the machine
             # these end the process: for what Python cannot interrupt, and for what waits without end
@@ -140,22 +140,22 @@ def _limited() -> None:
 
 def in_process(kind: str, first: int, last: int) -> list[dict[str, Any]]:
     """Outcomes from a process of its own; where it ends, that is the outcome of the case that it was at."""
-    found: list[dict[str, Any]] = []
+    cases: list[dict[str, Any]] = []
     while first < last:
         command = [sys.executable, __file__, "--worker", kind, str(first), str(last)]
         with tempfile.TemporaryDirectory() as folder:  # of all files that cases write
             environment = os.environ | {"OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg", "TMPDIR": folder}
             child = subprocess.run(command, capture_output=True, text=True, preexec_fn=_limited, env=environment)
         lines = [json.loads(line) for line in child.stdout.splitlines()]
-        found += [line for line in lines if "case" in line]
+        cases += [line for line in lines if "case" in line]
         if child.returncode == 0:
             break
-        at = max((line["asked"] for line in lines if "asked" in line), default=first)
+        at = max((line["begun"] for line in lines if "begun" in line), default=first)
         end = child.stderr.strip().splitlines()[-1:] or [""]
         what = f"end of the process ({child.returncode})"
-        found.append({"case": f"{kind}:{at}", "name": "?", "outcome": what, "detail": end[0][:200]})
+        cases.append({"case": f"{kind}:{at}", "name": "?", "outcome": what, "detail": end[0][:200]})
         first = at + 1
-    return found
+    return cases
 
 
 def run(kind: str, count: int, workers: int = 2) -> list[dict[str, Any]]:
@@ -164,25 +164,25 @@ def run(kind: str, count: int, workers: int = 2) -> list[dict[str, Any]]:
     starts = range(0, count, size)
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:
         parts = pool.map(lambda first: in_process(kind, first, min(first + size, count)), starts)
-        return [one for part in parts for one in part]
+        return [case for part in parts for case in part]
 
 
-def table(found: list[dict[str, Any]]) -> str:
+def table(cases: list[dict[str, Any]]) -> str:
     """Counts by function and outcome, as Markdown; then what was bad, with the number to ask it again."""
-    counts = collections.Counter((one["name"], one["outcome"]) for one in found)
+    counts = collections.Counter((case["name"], case["outcome"]) for case in cases)
     outcomes = [*GOOD, *sorted({what for _, what in counts} - set(GOOD))]
     rows = [f"| function | {' | '.join(outcomes)} |", "|---" * (len(outcomes) + 1) + "|"]
-    for name in dict.fromkeys(one["name"] for one in sorted(found, key=lambda one: one["name"])):
+    for name in dict.fromkeys(case["name"] for case in sorted(cases, key=lambda case: case["name"])):
         rows.append(f"| {name} | {' | '.join(str(counts[name, what]) for what in outcomes)} |")
-    totals = collections.Counter(one["outcome"] for one in found)
+    totals = collections.Counter(case["outcome"] for case in cases)
     rows.append(f"| all | {' | '.join(str(totals[what]) for what in outcomes)} |")
-    bad = [f"{one['case']} {one['name']}: {one['outcome']}: {one['detail']}" for one in bad_ones(found)]
+    bad = [f"{case['case']} {case['name']}: {case['outcome']}: {case['detail']}" for case in failures(cases)]
     return "\n".join([*rows, "", *bad[:60]])
 
 
-def bad_ones(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def failures(cases: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Those that are not as they should be."""
-    return [one for one in found if one["outcome"] not in GOOD]
+    return [case for case in cases if case["outcome"] not in GOOD]
 
 
 def again(case: str) -> None:
@@ -209,8 +209,8 @@ def main() -> None:
     sys.path.insert(0, str(Path(__file__).parent))
     if options.worker:
         kind, first, last = options.worker
-        for one in ask_all(kind, int(first), int(last)):
-            print(json.dumps(one), flush=True)
+        for line in ask_all(kind, int(first), int(last)):
+            print(json.dumps(line), flush=True)
     elif options.case:
         again(options.case)
     else:

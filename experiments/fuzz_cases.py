@@ -63,8 +63,8 @@ def slab(rng: Rng) -> bp.Slab:
         for _ in range(int(rng.integers(1, 5)))
     ]
     sides = [bp.AIR if rng.random() < 0.85 else fluid(rng) for _ in range(2)]
-    one = bp.Slab(bp.Cell(pieces), int(10.0 ** pick(rng, (0, 0, rng.uniform(0, 3), rng.uniform(0, 15)))), *sides)
-    return one if rng.random() < 0.8 else one + bp.Slab.uniform(fluid(rng), magnitude(rng))
+    stack = bp.Slab(bp.Cell(pieces), int(10.0 ** pick(rng, (0, 0, rng.uniform(0, 3), rng.uniform(0, 15)))), *sides)
+    return stack if rng.random() < 0.8 else stack + bp.Slab.uniform(fluid(rng), magnitude(rng))
 
 
 def medium(number: int) -> list[Case]:

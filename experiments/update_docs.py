@@ -13,11 +13,11 @@ def main(name: str, table: Path, pages: Path = PAGES) -> None:
     """Replace what stands between ``<!-- table:NAME -->`` and ``<!-- end -->`` in the one page that has these marks."""
     pattern = re.compile(rf"(<!-- table:{re.escape(name)} -->\n).*?(<!-- end -->)", re.DOTALL)
     texts = {page: page.read_text(encoding="utf-8") for page in sorted(pages.glob("*.md"))}
-    found = [page for page, text in texts.items() for _ in pattern.findall(text)]
-    if len(found) != 1:
-        sys.exit(f"expected one table named {name} in {pages}, found {len(found)}")
+    holders = [page for page, text in texts.items() for _ in pattern.findall(text)]
+    if len(holders) != 1:
+        sys.exit(f"expected one table named {name} in {pages}, found {len(holders)}")
     rows = table.read_text(encoding="utf-8").rstrip("\n") + "\n"
-    found[0].write_text(pattern.sub(lambda m: m[1] + rows + m[2], texts[found[0]]), encoding="utf-8")
+    holders[0].write_text(pattern.sub(lambda m: m[1] + rows + m[2], texts[holders[0]]), encoding="utf-8")
 
 
 if __name__ == "__main__":

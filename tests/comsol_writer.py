@@ -67,6 +67,13 @@ def meta(
     return lines
 
 
+def text_file(folder, text):
+    """A file of a text as it stands."""
+    path = folder / "export.txt"
+    path.write_text(text)
+    return path
+
+
 def _finish(path, lines, crlf=False, encoding="utf-8"):
     path.write_bytes(("\r\n" if crlf else "\n").join([*lines, ""]).encode(encoding))
     return path

@@ -3,16 +3,11 @@
 import ast
 import importlib
 import re
-import subprocess
-import sys
-from pathlib import Path
 
 import pytest
+from source_tree import CHECKOUT, FILES, ROOT, tree
 
 import beamprop as bp
-
-ROOT = Path(bp.__file__).parent
-CHECKOUT = Path(__file__).parent.parent
 
 #: A module imports only from those before it. A new module takes its place here, and in docs/architecture.md.
 ORDER = [
@@ -38,7 +33,6 @@ ORDER = [
     "cli",
     "__main__",
 ]
-
 #: Those that see less than all that stands before them.
 ONLY = {
     "conventions": set(),
@@ -61,45 +55,34 @@ ONLY = {
 }
 
 
-def module_of(path):
-    """The name in ORDER of a file: the folder's, for a module that has become a folder."""
-    parts = path.relative_to(ROOT).parts
-    return parts[0].removesuffix(".py")
-
-
-FILES = {path: module_of(path) for path in sorted(ROOT.rglob("*.py"))}
 MODULES = sorted(set(FILES.values()) - {"__init__"})
-
-
-def tree(path):
-    return ast.parse(path.read_text(encoding="utf-8"), str(path))
 
 
 def own_imports(path):
     """Names of the package's modules that a file imports, anywhere in it."""
     depth = len(path.relative_to(ROOT).parts) - 1
-    found = set()
+    modules = set()
     for node in ast.walk(tree(path)):
         if isinstance(node, ast.ImportFrom) and node.level > depth:
-            found |= {node.module.split(".")[0]} if node.module else {alias.name for alias in node.names}
+            modules |= {node.module.split(".")[0]} if node.module else {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("beamprop"):
-            found |= {*node.module.split(".")[1:2]} or {alias.name for alias in node.names}
+            modules |= {*node.module.split(".")[1:2]} or {alias.name for alias in node.names}
         elif isinstance(node, ast.Import):
-            found |= {
+            modules |= {
                 name for alias in node.names if alias.name.startswith("beamprop") for name in alias.name.split(".")[1:2]
             }
-    return found - {FILES[path]}
+    return modules - {FILES[path]}
 
 
-def other_imports(path):
+def foreign_imports(path):
     """Full names of all that a file imports from other packages."""
-    found = set()
+    imports = set()
     for node in ast.walk(tree(path)):
         if isinstance(node, ast.ImportFrom) and not node.level:
-            found |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
+            imports |= {f"{node.module}.{alias.name}" for alias in node.names} | {node.module}
         elif isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-    return found
+            imports |= {alias.name for alias in node.names}
+    return imports
 
 
 def files_of(module):
@@ -130,7 +113,7 @@ def test_the_checker_sees_imports():
     """It finds relative and function-level imports in files and folders (or the tests here would hold by themselves)."""
     assert {"io", "fields", "response", "sources", "media"} <= set().union(*map(own_imports, files_of("api")))
     assert {"parameters", "io", "api", "plot"} <= set().union(*map(own_imports, files_of("cli")))
-    assert "pyfftw" in set().union(*map(other_imports, files_of("arrays")))
+    assert "pyfftw" in set().union(*map(foreign_imports, files_of("arrays")))
     assert len(FILES) >= 18
 
 
@@ -138,7 +121,7 @@ def test_the_checker_sees_imports():
 def test_one_user_of_fft_libraries(module):
     """arrays/fft.py alone imports pyfftw or scipy.fft."""
     for path in files_of(module):
-        fft = {name for name in other_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
+        fft = {name for name in foreign_imports(path) if name.split(".")[0] == "pyfftw" or name.startswith("scipy.fft")}
         assert not fft or path.name == "fft.py"
 
 
@@ -190,7 +173,7 @@ def test_one_home_of_checks():
 def test_kernels_know_arrays_only(module):
     """Below the questions nothing imports xarray, matplotlib, click or tqdm."""
     for path in files_of(module):
-        assert not {name.split(".")[0] for name in other_imports(path)} & {
+        assert not {name.split(".")[0] for name in foreign_imports(path)} & {
             "xarray",
             "matplotlib",
             "click",
@@ -209,43 +192,6 @@ def test_nothing_prints_and_nothing_is_global(path):
         assert not isinstance(node, ast.Global), node.lineno
         assert not (isinstance(node, ast.ImportFrom) and node.names[0].name == "*"), node.lineno
         assert not (isinstance(node, ast.ExceptHandler) and node.type is None), node.lineno
-
-
-# --- sizes ------------------------------------------------------------------------------------------------
-
-#: Files that are longer than 350 lines still; one that no longer is, is to be taken out.
-TOO_LONG: set[str] = set()
-#: Functions of more than eight arguments: questions, which have as many as there is to be asked.
-MANY_ARGUMENTS = {
-    "api/field.py: field",
-    "api/field_question.py: checked_question",
-    "api/save_field.py: save_field",
-    "fem/question.py: field",
-}
-
-
-def lines_of(path):
-    return len(path.read_text(encoding="utf-8").splitlines())
-
-
-def arguments_of(function):
-    """Number of arguments of a function's definition, self and cls aside."""
-    named = [a.arg for a in (*function.args.posonlyargs, *function.args.args, *function.args.kwonlyargs)]
-    return len([name for name in named if name not in ("self", "cls")])
-
-
-def test_files_have_at_most_350_lines():
-    assert {path.relative_to(ROOT).as_posix() for path in FILES if lines_of(path) > 350} == TOO_LONG
-
-
-def test_functions_have_at_most_eight_arguments():
-    long = {
-        f"{path.relative_to(ROOT).as_posix()}: {node.name}"
-        for path in FILES
-        for node in ast.walk(tree(path))
-        if isinstance(node, ast.FunctionDef) and arguments_of(node) > 8
-    }
-    assert long == MANY_ARGUMENTS
 
 
 # --- what is public ---------------------------------------------------------------------------------------
@@ -299,55 +245,7 @@ def test_public_names_have_one_home():
             assert getattr(importlib.import_module(f"beamprop.{home}"), name) is getattr(bp, name)
 
 
-# --- what ships -------------------------------------------------------------------------------------------
-
-#: A path of somebody's machine, or one outside the checkout.
-PRIVATE = re.compile(r"(?<![\w$.})/])/(home|Users|root|tmp|work|mnt)/[\w.]|(?<![\w/.])[s]hared/\w|C:\\\\Users")
-
-
-def shipped():
-    kinds = ("*.py", "*.md", "*.toml", "*.cfg", "*.yml", "*.sh")
-    tops = [CHECKOUT / name for name in ("beamprop", "tests", "experiments", "docs")]
-    inner = [path for top in tops for kind in kinds for path in sorted(top.rglob(kind))]
-    return inner + [
-        path
-        for name in ("README.md", "CONTRIBUTING.md", "CITATION.cff", "pyproject.toml", ".ci/run")
-        if (path := CHECKOUT / name).exists()
-    ]
-
-
-def test_no_file_names_a_private_path():
-    """Nothing that ships points into the folders of the machine it was written on."""
-    files = shipped()
-    assert len(files) > 20
-    found = [
-        f"{path.relative_to(CHECKOUT)}: {match.group()}"
-        for path in files
-        if (match := PRIVATE.search(path.read_text(encoding="utf-8")))
-    ]
-    assert found == []
-
-
-def test_the_tests_that_the_documentation_names_exist():
-    """Each statement of docs/what-happens-when.md names a test that holds it."""
-    known = {path.name: path.read_text(encoding="utf-8") for path in (CHECKOUT / "tests").glob("test_*.py")}
-    text = (CHECKOUT / "docs" / "what-happens-when.md").read_text(encoding="utf-8")
-    named = re.findall(r"`(?:(test_\w+\.py)(?:::)?)?(test_\w+)?`", text)
-    assert len(named) > 25
-    for file, test in named:
-        assert not file or file in known, file
-        assert not test or f"def {test}(" in (known[file] if file else "".join(known.values())), test
-
-
-def test_each_dependency_states_one_minimum():
-    """What the gate installs as minima is read from pyproject.toml: every dependency, pinned."""
-    script = CHECKOUT / ".ci" / "minima.py"
-    pins = subprocess.run([sys.executable, str(script), "test"], capture_output=True, text=True, check=True).stdout
-    names = {
-        re.split("==", line)[0] for line in pins.splitlines() if re.fullmatch(r"[\w-]+(\[\w+\])?==[\d.]+(; .*)?", line)
-    }
-    assert len(names) == len(pins.splitlines())
-    assert {"numpy", "xarray", "h5netcdf", "h5py", "zarr", "netCDF4"} <= names
+# --- storage ----------------------------------------------------------------------------------------------
 
 
 #: Files of the storage package, in the order in which they may import one another.
@@ -366,12 +264,3 @@ def test_storage_is_in_layers(name):
     }
     assert inner <= set(STORAGE[: STORAGE.index(name)])
     assert {p.stem for p in (ROOT / "io" / "storage").glob("*.py")} == set(STORAGE)
-
-
-@pytest.mark.parametrize("folder", ["home", "Users", "root", "tmp", "work"])
-def test_private_paths_are_recognised(folder):
-    """The pattern finds what it is for, and leaves URLs, shell variables and other words alone."""
-    for text in (f"/{folder}/ann/x", f"open('/{folder}/a.nc')", f"in /{folder}/a"):
-        assert PRIVATE.search(text)
-    for text in (f"https://example.org/{folder}/x", f"${folder}/x", f"docs/{folder}/y", f"/{folder}s/x"):
-        assert not PRIVATE.search(text)

@@ -1,57 +1,18 @@
-"""The command: every subcommand with every kind of output, the API's numbers, and exit code 2 for wrong use."""
+"""The command: every kind of output of every question, and options that reach the physics, held to the API's numbers."""
 
 import json
-import subprocess
-import sys
 import warnings
 
-import click
 import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from command import BEAM, COMMANDS, SLAB, P, from_json, good
 from matplotlib.image import imread
 from versions import names
 
 import beamprop as bp
 from beamprop.cli import main
-
-SLAB = bp.Slab(bp.lmmd_cell(), 20)
-BEAM = bp.GaussianBeam(0.096)
-P = ["--periods", "20"]
-#: What the installed command runs.
-COMMAND = "from beamprop.cli import main; main(prog_name='beamprop')"
-
-COMMANDS = {
-    "width": ([*P, "--frequency", "2400:2600:3"], lambda: bp.beam_width(SLAB, BEAM, [2400.0, 2500.0, 2600.0])),
-    "field": (
-        [*P, "--x", "-0.2:0.2:9", "--z", "0:0.2:5", "--z0", "-0.1"],
-        lambda: bp.field(
-            SLAB, bp.GaussianBeam(0.096, z0=-0.1), 2500.0, np.linspace(-0.2, 0.2, 9), np.linspace(0, 0.2, 5)
-        ),
-    ),
-    "spectrum": ([*P, "--kx-over-k0", "0:2:5"], lambda: bp.scattering(SLAB, 2500.0, kx_over_k0=np.linspace(0, 2, 5))),
-    "bloch": (["--kx-over-k0", "0,0.5,2"], lambda: bp.bloch(SLAB.cell, 2500.0, kx_over_k0=[0.0, 0.5, 2.0])),
-}
-
-
-def run(*arguments):
-    return CliRunner().invoke(main, [str(a) for a in arguments])
-
-
-def good(*arguments):
-    result = run(*arguments)
-    assert result.exit_code == 0, result.output
-    return result
-
-
-def from_json(value):
-    """{re, im} as complex numbers and null as nan, lists as arrays."""
-    if isinstance(value, list):
-        return np.array([from_json(v) for v in value])
-    if isinstance(value, dict):
-        return complex(value["re"], value["im"])
-    return np.nan if value is None else value
 
 
 def assert_same_numbers(got, want, rtol=1e-9):
@@ -141,6 +102,7 @@ def test_the_table_shows_the_numbers():
 
 
 # --- options reach the physics ----------------------------------------------------------------------------
+
 
 HELIUM = bp.Fluid.from_speed(0.18, 972.0)
 CELL = bp.lmmd_cell(0.1 + 0.2j, 0.1, 6, 1 / 40, 2000.0, HELIUM)
@@ -269,201 +231,13 @@ def test_warnings_go_to_stderr():
     assert json.loads(result.stdout)["data_vars"]["fwhm_out"]["data"] is None
 
 
-# --- wrong use --------------------------------------------------------------------------------------------
-
-
-WRONG = [
-    *[
-        ("width", [*P, option, value], word)
-        for option, value, word in [
-            ("--fwhm", "nan", "fwhm"),
-            ("--fwhm", "0", "fwhm"),
-            ("--fwhm", "wide", "--fwhm"),
-            ("--angle", "90", "angle"),
-            ("--angle", "10:20", "--angle"),
-            ("--z0", "0.1", "z0"),
-            ("--frequency", "-5", "frequency"),
-            ("--frequency", "nan", "frequency"),
-            ("--frequency", "1:2:0", "--frequency"),
-            ("--frequency", "", "--frequency"),
-            ("--frequency", "1,a", "--frequency"),
-            ("--rtol", "2", "rtol"),
-            ("--air-distance", "-1", "air_distance"),
-            ("--rho-m", "x", "--rho-m"),
-            ("--rho-m", "0.05-0.05j", "density"),
-            ("--n-layers", "0", "n_layers"),
-            ("--n-layers", "2.5", "--n-layers"),
-            ("--eta", "0", "eta"),
-            ("--eta", "inf", "eta"),
-            ("--design-frequency", "0", "design_frequency"),
-            ("--density", "nan", "density"),
-            ("--sound-speed", "0", "sound_speed"),
-            ("--medium", "steel", "--medium"),
-            ("--form", "bent", "--form"),
-            ("--width-of", "power", "--width-of"),
-            ("--nonsense", "1", "--nonsense"),
-        ]
-    ],
-    ("width", ["--periods", "0"], "periods"),
-    ("width", ["--periods", "1.5"], "--periods"),
-    ("width", ["--periods", "-3"], "periods"),
-    ("field", [*P, "--z", "-1"], "z"),
-    ("field", [*P, "--x", "nan"], "x"),
-    ("field", [*P, "--period", "1"], "period"),
-    ("field", [*P, "--boundary", "closed"], "--boundary"),
-    ("field", [*P, "--quantity", "phase"], "--quantity"),
-    ("field", [*P, "--boundary", "periodic", "--period", "0.01"], "period"),
-    ("field", [*P, "--boundary", "periodic", "--x", "0,0.1,0.5"], "period"),
-    ("spectrum", [*P, "--kx", "0,1", "--angle", "0,3"], "exactly one"),
-    ("spectrum", [*P, "--angle", "95"], "angle"),
-    ("spectrum", [*P, "--kx-over-k0", "0,inf"], "kx_over_k0"),
-    ("spectrum", [*P, "--quantity", "x"], "--quantity"),
-    ("bloch", ["--kx-over-k0", "nan"], "kx_over_k0"),
-    ("bloch", ["--eta", "-1"], "eta"),
-    ("width", [*P, "--after-density", "0"], "density"),
-    ("width", [*P, "--after-speed", "0"], "speed"),
-    ("width", [*P, "--frequency", "2000:3000:1000000000000"], "--frequency"),
-    ("width", [*P, "--frequency", "2000:3000:0"], "--frequency"),
-    ("width", ["--periods", "1" + 400 * "0"], "periods"),
-    ("width", [*P, "--fwhm", "1e-200"], "fwhm"),
-    ("field", [*P, "--x", "0:1:1000000", "--z", "0:1:1000000"], "x"),
-    ("field", [*P, "--frequency", "1e155"], "frequency"),
-    ("spectrum", [*P, "--frequency", "1:2:10000000", "--kx", "0:1:10000000"], "kx"),
-]
-
-
-@pytest.mark.parametrize(("command", "options", "word"), WRONG)
-def test_wrong_use_exits_with_two_and_writes_nothing(command, options, word, tmp_path):
-    """The message on stderr names the option or argument; stdout and the folder stay empty."""
-    # a valid axis for the plot comes first: of an option given twice the last one counts
-    axis = {"width": "--frequency=2400,2500", "bloch": "--kx-over-k0=0,1"}.get(command)
-    result = run(
-        command, *([axis] if axis else []), *options, "--output", tmp_path / "a.nc", "--plot", tmp_path / "a.png"
-    )
-    assert result.exit_code == 2, result.output
-    assert word in result.stderr.split("Error:")[1]
-    assert result.stdout == ""
-    assert names(tmp_path) == []
-
-
-@pytest.mark.parametrize(
-    ("command", "options"),
-    [
-        ("width", [*P, "--frequency", "2500"]),
-        ("spectrum", [*P, "--angle", "45"]),
-        ("bloch", ["--kx-over-k0", "1"]),
-        ("field", [*P, "--angle", "0,10"]),
-        ("field", [*P, "--frequency", "2400,2500"]),
-        ("field", [*P, "--x", "0"]),
-        ("field", [*P, "--z", "0.1"]),
-    ],
-)
-def test_a_plot_that_cannot_be_drawn_is_refused_first(command, options, tmp_path):
-    """One value where a picture needs an axis: exit 2, before anything is computed or written."""
-    result = run(command, *options, "--output", tmp_path / "a.nc", "--plot", tmp_path / "a.png")
-    assert result.exit_code == 2, result.output
-    assert "Error:" in result.stderr
-    assert names(tmp_path) == []
-
-
-@pytest.mark.parametrize("command", COMMANDS)
-@pytest.mark.parametrize(
-    ("option", "value"),
-    [
-        ("--output", "a.txt"),
-        ("--output", "a"),
-        ("--output", "none/a.nc"),
-        ("--plot", "a.jpg"),
-        ("--plot", "a.nc"),
-        ("--plot", "none/a.png"),
-    ],
-)
-def test_files_that_cannot_be_written_are_refused_first(command, option, value, tmp_path):
-    """A wrong ending or a missing folder: exit 2."""
-    result = run(command, *COMMANDS[command][0], option, tmp_path / value)
-    assert result.exit_code == 2
-    assert option in result.stderr
-    assert names(tmp_path) == []
-
-
-def test_unknown_commands():
-    """No command, or one that is not there: exit 2."""
-    assert run().exit_code == 2
-    result = run("paint")
-    assert result.exit_code == 2
-    assert "paint" in result.stderr
-
-
 # --- help and start-up ------------------------------------------------------------------------------------
-
-
-def test_help_lists_the_commands():
-    """--help and -h, of the group and of each command, with defaults."""
-    out = good("--help").stdout
-    assert good("-h").stdout == out
-    for command in COMMANDS:
-        assert f"\n  {main.get_command(click.Context(main), command).name} " in out
-        text = good(command, "--help").stdout
-        for option in ("--output", "--plot", "--json", "--quiet", "--eta", "--rho-m"):
-            assert option in text
-        assert "[default: 0.05+0.05j]" in text
-    assert bp.__version__ in good("--version").stdout
-
-
-def imported(*arguments):
-    """Modules that a fresh interpreter has imported with these arguments, and its stdout."""
-    done = subprocess.run([sys.executable, "-X", "importtime", *arguments], capture_output=True, text=True, check=True)
-    return {
-        line.rsplit("|", 1)[1].strip() for line in done.stderr.splitlines() if line.startswith("import time:")
-    }, done.stdout
-
-
-@pytest.mark.parametrize(
-    ("arguments", "heavy"),
-    [
-        (("-c", COMMAND, "--help"), ("numpy", "xarray", "scipy", "matplotlib", "pyfftw", "h5netcdf")),
-        (("-c", COMMAND, "field", "--help"), ("numpy", "xarray", "scipy", "matplotlib", "pyfftw", "h5netcdf")),
-        (("-c", "import beamprop"), ("numpy", "xarray", "scipy", "matplotlib", "pyfftw", "h5netcdf")),
-        (
-            ("-c", "import beamprop as bp; bp.Slab(bp.lmmd_cell(), 450)"),
-            ("xarray", "scipy", "matplotlib", "pyfftw", "h5netcdf"),
-        ),
-    ],
-    ids=["help", "field help", "import", "a slab"],
-)
-def test_what_need_not_be_imported_is_not(arguments, heavy):
-    """Help and the bare import are instant: nothing heavy is imported before it is used."""
-    modules, out = imported(*arguments)
-    assert "beamprop" in modules
-    assert not {name.split(".")[0] for name in modules} & set(heavy)
-    assert ("Usage" in out) == ("--help" in arguments)
-
-
-def test_the_installed_command():
-    """In a process of its own: JSON on stdout that another program can read, and nothing on stderr."""
-    options = ["bloch", "--kx-over-k0", "0", "--json"]
-    done = subprocess.run([sys.executable, "-c", COMMAND, *options], capture_output=True, text=True, check=True)
-    data = json.loads(done.stdout)["data_vars"]["kz_over_k0"]["data"]
-    assert from_json(data) == pytest.approx(bp.bloch(SLAB.cell, 2500.0, kx_over_k0=0.0).kz_over_k0.item(), rel=1e-12)
-    assert done.stderr == ""
 
 
 def test_datasets_of_the_command_are_those_of_the_api(tmp_path):
     """Not the numbers alone: dims, coordinates and attributes too."""
     good("bloch", "--kx-over-k0", "0,0.5", "-o", tmp_path / "a.nc")
     xr.testing.assert_identical(bp.load(tmp_path / "a.nc"), bp.bloch(SLAB.cell, 2500.0, kx_over_k0=[0.0, 0.5]))
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [("width", "beam_width"), ("spectrum", "scattering"), ("modes", "guided_modes"), ("beam-width", "beam_width")],
-)
-def test_names_are_those_of_python_and_old_ones_stay(old, new):
-    """A command has the name of its question; what was typed before, and hyphens, are taken too."""
-    assert main.get_command(click.Context(main), old) is main.commands[new]
-    assert set(main.commands) == {
-        "beam_measures", "beam_width", "bloch", "compare", "convert", "field", "guided_modes", "scattering",
-    }  # fmt: skip
 
 
 def test_beam_measures():

@@ -5,37 +5,12 @@ import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from slanted_beam import X, Z, gaussian, make, swept
 
 from beamprop.comparison.fields import compare
 from beamprop.io.comsol import read_comsol
-from beamprop.plot.comparison import comparison
 
 matplotlib.use("Agg")
-
-X, Z = np.linspace(-0.6, 0.6, 121), np.linspace(-0.1, 0.5, 31)
-RADIUS, K = 0.1, 20.0
-
-
-def gaussian(x, z, radius=RADIUS, k=K):
-    """A beam that fans out along z, and slants."""
-    a = radius * (1 + z**2)
-    return np.exp(-(((x - 0.1 * z) / a) ** 2) + 1j * k * (z + x**2))
-
-
-def make(x=X, z=Z, units="Pa", values=None, **attrs):
-    p = gaussian(x[None, :], z[:, None]) if values is None else values
-    labels = {
-        "z": ("z", z, {"units": "m", "long_name": "depth"}),
-        "x": ("x", x, {"units": "m", "long_name": "lateral"}),
-    }
-    return xr.Dataset({"p": (("z", "x"), p, {"units": units})}, labels, attrs)
-
-
-def swept(frequencies=(2000.0, 2500.0), angles=(0.0, 30.0)):
-    parts = [[make(values=gaussian(X[None, :], Z[:, None], k=f / 100 + t)) for t in angles] for f in frequencies]
-    rows = [xr.concat(row, xr.DataArray(list(angles), dims="angle", name="angle")) for row in parts]
-    return xr.concat(rows, xr.DataArray(list(frequencies), dims="frequency", name="frequency"))
-
 
 # --- the numbers -----------------------------------------------------------------------------------------------------
 
@@ -99,8 +74,8 @@ def test_the_scale_is_the_best_one():
     b = make(values=(a.p.values + 0.1 * random.normal(size=a.p.shape)) * (0.7 + 0.2j))
     best = float(compare(a, b).relative_l2_scaled)
     scale = complex(compare(a, b).scale)
-    for other in (scale * 1.01, scale * 0.99, scale * np.exp(0.01j), scale * np.exp(-0.01j)):
-        assert float(compare(a, make(values=b.p.values * other)).relative_l2) > best
+    for factor in (scale * 1.01, scale * 0.99, scale * np.exp(0.01j), scale * np.exp(-0.01j)):
+        assert float(compare(a, make(values=b.p.values * factor)).relative_l2) > best
     np.testing.assert_allclose(compare(a, b, rescale=True).relative_l2, best, rtol=1e-12)
 
 
@@ -210,97 +185,6 @@ def test_no_common_region(b, said):
         compare(make(), b)
 
 
-# --- conventions, units, boundaries ------------------------------------------------------------------------------------
-
-
-def test_a_conjugate_is_noticed():
-    b = make(values=0.8 * np.conj(make().p.values))
-    with pytest.warns(UserWarning, match=r"b looks like exp\(\+i w t\)"):
-        c = compare(make(), b)
-    assert c.attrs["conjugate_fits_better"] == 1
-    assert float(c.relative_l2) > 0.5
-
-
-def test_fields_that_are_their_own_conjugates_raise_no_suspicion():
-    a = make(values=np.abs(make().p.values) + 0j)
-    b = make(values=a.p.values * (1 + 0.01j))
-    assert compare(a, b).attrs["conjugate_fits_better"] == 0
-    slanted = make(values=a.p.values * np.exp(0.01j * X))
-    noisy = a.p.values * np.exp(-0.01j * X) + 0.05 * np.random.default_rng(0).normal(size=a.p.shape)
-    assert compare(slanted, make(values=noisy)).attrs["conjugate_fits_better"] == 0  # conj(b) is nearer, by a little
-
-
-@pytest.mark.parametrize(("units", "pascal"), [("kPa", 1e3), ("mPa", 1e-3), ("Pa", 1.0)])
-def test_units_are_converted(units, pascal):
-    b = make(values=make().p.values / pascal, units=units)
-    assert float(compare(make(), b).relative_l2) < 1e-14
-    back = compare(b, make())
-    assert float(back.relative_l2) < 1e-14
-    assert back.p_a.attrs["units"] == back.peak_difference.attrs["units"] == units
-
-
-@pytest.mark.parametrize("units", ["m/s", "dB", None])
-def test_units_that_are_no_pressure(units):
-    b = make()
-    b.p.attrs = {"units": units} if units else {}
-    with pytest.raises(ValueError, match="b: expected p in 'Pa' as a has it, or in a unit of pressure"):
-        compare(make(), b)
-    assert float(compare(b, b).relative_l2) == 0
-
-
-@pytest.mark.parametrize(
-    ("of_a", "of_b", "said"),
-    [
-        (
-            {"boundary": "open"},
-            {"boundary": "periodic", "period": 2.24},
-            r"b is periodic \(2.24 m\) and the other in open",
-        ),
-        ({"boundary": "periodic", "period": 2.24}, {"boundary": "open"}, r"a is periodic \(2.24 m\)"),
-        (
-            {"boundary": "periodic", "period": 2.24},
-            {"boundary": "periodic", "period": 2.25},
-            "a has the period 2.24 m, b 2.25 m",
-        ),
-    ],
-)
-def test_different_boundaries_are_warned_about(of_a, of_b, said):
-    with pytest.warns(UserWarning, match=f"{said}.*the wrap-around of the neighbouring beams is counted in the error"):
-        compare(make(**of_a), make(**of_b))
-
-
-@pytest.mark.parametrize(
-    ("of_a", "of_b"),
-    [
-        ({"boundary": "periodic", "period": 2.24}, {"boundary": "periodic", "period": 2.24}),
-        ({"boundary": "open"}, {"boundary": "open"}),
-        ({"boundary": "periodic", "period": 2.24}, {}),
-        ({}, {}),
-    ],
-)
-def test_same_or_unknown_boundaries_are_not(of_a, of_b):
-    compare(make(**of_a), make(**of_b))  # a warning would fail the test
-
-
-def test_wraparound_is_estimated_apart():
-    neighbour = 0.01 * gaussian(X[None, :] - 0.3, Z[:, None])
-    open_space = make(boundary="open")
-    periodic = make(values=open_space.p.values + neighbour, boundary="periodic", period=2.0)
-    other = make(values=periodic.p.values * 1.001, boundary="periodic", period=2.0)
-    c = compare(periodic, other, open_reference=open_space)
-    assert float(c.relative_l2) == pytest.approx(1e-3, rel=1e-6)
-    want = np.linalg.norm(neighbour) / np.linalg.norm(periodic.p)
-    assert float(c.wraparound) == pytest.approx(want, rel=1e-6)
-    assert "wraparound" not in compare(periodic, other)
-    with pytest.warns(UserWarning, match=r"estimated at 0\.0\d+ \(wraparound\)"):
-        c = compare(open_space, other, open_reference=open_space)
-    assert float(c.wraparound) == pytest.approx(want, rel=0.2)
-    with pytest.raises(ValueError, match="open_reference: expected a field in open space"):
-        compare(periodic, other, open_reference=periodic)
-    with pytest.raises(ValueError, match="open_reference: expected a or b to be periodic"):
-        compare(open_space, open_space, open_reference=open_space)
-
-
 # --- sweeps -------------------------------------------------------------------------------------------------------------
 
 
@@ -314,9 +198,9 @@ def test_sweeps_are_compared_one_by_one():
     assert c.fwhm_difference.dims == ("frequency", "angle", "z")
     np.testing.assert_allclose(c.relative_l2, [[0, 0.5], [0, 0.5]], rtol=1e-12)
     np.testing.assert_allclose(c.scale, [[1, 1 / 1.5], [1, 1 / 1.5]], rtol=1e-12)
-    one = compare(a.isel(frequency=1, angle=1), b.isel(frequency=[1], angle=1))
+    single = compare(a.isel(frequency=1, angle=1), b.isel(frequency=[1], angle=1))
     for name in ("largest_error", "largest_error_x", "largest_error_z", "relative_l2_scaled"):
-        np.testing.assert_allclose(c[name][1, 1], one[name], rtol=1e-12, atol=1e-14)
+        np.testing.assert_allclose(c[name][1, 1], single[name], rtol=1e-12, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -383,58 +267,3 @@ def test_a_comsol_file_against_our_field(tmp_path):
     assert float(c.relative_l2) < 1e-12
     with pytest.warns(UserWarning, match=r"b looks like exp\(\+i w t\)"):
         compare(ours, read_comsol(path, x="y", z="x", conjugate=False))
-
-
-# --- the picture ----------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def figure():
-    import matplotlib.pyplot as plt
-
-    yield plt
-    plt.close("all")
-
-
-def test_picture_with_maps(figure):
-    c = compare(make(), make(values=make().p.values * 1.01))
-    axes = comparison(c)
-    assert len(axes) == 5
-    np.testing.assert_allclose(axes[1].collections[0].get_array(), np.abs(c.p_b.T), rtol=1e-12)
-    np.testing.assert_allclose(axes[3].lines[0].get_ydata(), c.relative_l2_by_z, rtol=1e-12)
-    np.testing.assert_allclose(axes[4].lines[0].get_ydata(), c.fwhm_difference * 1e6, atol=1e-9)
-    assert axes[4].get_ylabel().endswith("[µm]")
-    axes[0].figure.canvas.draw()
-
-
-def test_picture_without_fields_and_in_given_axes(figure):
-    c = compare(make(), make(values=make().p.values * 1.01)).drop_vars(["p_a", "p_b", "error"])
-    assert len(comparison(c)) == 2
-    one = figure.subplots()[1]
-    assert comparison(c, one) is one
-    two = figure.subplots(1, 2)[1]
-    assert comparison(c, two)[1] is two[1]
-    with pytest.raises(ValueError, match="axes: expected 1, 2 or"):
-        comparison(c, figure.subplots(1, 5)[1])
-
-
-@pytest.mark.parametrize(
-    "pair",
-    [
-        (make(), make()),
-        (make().isel(z=[3]), make().isel(z=[3])),
-        (make(np.linspace(0, 0.05, 9)), make(np.linspace(0, 0.05, 9), values=np.zeros((31, 9)) + 0j)),
-    ],
-    ids=["identical", "one plane", "no widths"],
-)
-def test_picture_of_odd_cases(figure, pair):
-    axes = comparison(compare(*pair))
-    axes[-1].figure.canvas.draw()
-
-
-def test_picture_refuses(figure):
-    with pytest.raises(ValueError, match="cmp_ds: expected a dataset from compare, got p"):
-        comparison(make())
-    with pytest.raises(ValueError, match="cmp_ds: expected one field, got several along frequency, angle"):
-        comparison(compare(swept(), swept()))
-    comparison(compare(swept(), swept()).isel(frequency=0, angle=[1]))

@@ -43,9 +43,7 @@ SECTIONS = """% Dimension: 2
 
 def test_the_three_samples_are_good(tmp_path):
     for text in (GOOD, GRID, SECTIONS):
-        path = tmp_path / "a"
-        path.write_text(text)
-        assert "p" in read_comsol(path)
+        assert "p" in read_comsol(writer.text_file(tmp_path, text))
 
 
 @pytest.mark.parametrize(
@@ -103,8 +101,7 @@ def test_the_three_samples_are_good(tmp_path):
 )
 def test_malformed_files_are_refused_with_the_line(tmp_path, text, old, new, said):
     assert old in text
-    path = tmp_path / "bad.txt"
-    path.write_text(text.replace(old, new))
+    path = writer.text_file(tmp_path, text.replace(old, new))
     if said is None:
         assert read_comsol(path).p.sizes == {"frequency": 2, "z": 2, "x": 2}
         return
@@ -121,15 +118,13 @@ def test_a_model_is_no_export(tmp_path):
 
 
 def test_points_and_commas_mixed(tmp_path):
-    path = tmp_path / "a.txt"
-    path.write_text("% Length unit: m\n% x;y;p (Pa)\n0,5;1;1\n0,7;1.25;1\n")
+    path = writer.text_file(tmp_path, "% Length unit: m\n% x;y;p (Pa)\n0,5;1;1\n0,7;1.25;1\n")
     with pytest.raises(ValueError, match=r"line 4: expected decimal commas throughout"):
         read_comsol(path)
 
 
 def test_unquoted_decimal_commas_in_csv_are_never_guessed(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_text("% Length unit,m\n% x,y,p (Pa)\n0,5,1,5,2,5\n")
+    path = writer.text_file(tmp_path, "% Length unit,m\n% x,y,p (Pa)\n0,5,1,5,2,5\n")
     with pytest.raises(ValueError, match="line 2: expected 6 names, for the 6 columns below, got 3"):
         read_comsol(path)
 
@@ -144,8 +139,7 @@ def test_space_has_three_dimensions(tmp_path):
 
 
 def test_wrong_count_of_expressions_is_warned_about(tmp_path):
-    path = tmp_path / "a"
-    path.write_text(GOOD.replace("% Expressions,2", "% Expressions,5"))
+    path = writer.text_file(tmp_path, GOOD.replace("% Expressions,2", "% Expressions,5"))
     with pytest.warns(UserWarning, match="states 5 columns of values, there are 2"):
         read_comsol(path)
 
@@ -164,8 +158,7 @@ def test_wrong_count_of_expressions_is_warned_about(tmp_path):
     ],
 )
 def test_arguments_are_checked(tmp_path, change, said):
-    path = tmp_path / "a"
-    path.write_text(GOOD)
+    path = writer.text_file(tmp_path, GOOD)
     with pytest.raises(ValueError, match=said):
         read_comsol(path, **change)
 

@@ -29,7 +29,7 @@ def test_a_sum_by_ffts_is_one_at_the_positions_themselves():
     grid = sums.grid_of(x)
     step = 2 * np.pi / (n * grid.step)
     k = step * np.arange(-20, 60) - 0.3j
-    line = paths.Contour(k, np.ones(k.size), step, -20, 0.3, 1.0)
+    line = paths.Contour(k, np.ones(k.size), step, -20, 0.3)
     h = rng.standard_normal((3, k.size)) + 0j
     right, left = rng.standard_normal((2, k.size)) + 0j
     turn = np.exp(1j * np.outer(k, x))
@@ -113,7 +113,7 @@ def test_nothing_is_left_behind_the_first_wall():
 
 
 def test_a_wide_tilted_beam_has_no_plane_waves_near_the_normal():
-    """|S| = exp(-(a (k - k0 sin)/2)^2) is 1e-12 at k0 sin - 2 sqrt(ln 1e12)/a; a fan's beams count together."""
+    """|S| = exp(-(a (k - k0 sin)/2)^2) is 1e-12 at k0 sin - 2 sqrt(ln 1e12)/a; beams at several angles count together."""
     beam = bp.GaussianBeam(5.0, 30)
     a = 5.0 / 2 / np.sqrt(np.log(2))
     low = K0 / 2 - 2 / a * np.sqrt(np.log(1e12))

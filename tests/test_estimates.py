@@ -4,17 +4,12 @@ import warnings
 
 import numpy as np
 import pytest
+from panels import panels
 
 import beamprop as bp
 
 FREQUENCY = 2000.0
 K0 = float(bp.AIR.wavenumber(FREQUENCY).real)
-
-
-def _panels(edges):
-    node, weight = np.polynomial.legendre.leggauss(20)
-    half = np.diff(edges) / 2
-    return (edges[:-1, None] + half[:, None] * (node + 1)).ravel(), (half[:, None] * weight).ravel()
 
 
 def _far_face(layer, thickness, kx):
@@ -31,8 +26,8 @@ def _tilted_profile_behind_layer(x, p, angle, layer, thickness, z0, positions):
     """The field on the far face: panels on the real axis, the spectrum of evenly spaced samples in long double."""
     real, kind = np.longdouble, np.clongdouble
     towards_0 = np.pi / 2 * 1.3 ** -np.arange(1.0, 120)
-    turn, w1 = _panels(np.unique(np.concatenate([np.linspace(0, np.pi / 2, 120), towards_0])))
-    rise, w2 = _panels(np.linspace(0, np.arcsinh(6.0), 120))
+    turn, w1 = panels(np.unique(np.concatenate([np.linspace(0, np.pi / 2, 120), towards_0])))
+    rise, w2 = panels(np.linspace(0, np.arcsinh(6.0), 120))
     kx = K0 * np.concatenate([np.sin(turn), np.cosh(rise)])
     weight = K0 * np.concatenate([np.cos(turn) * w1, np.sinh(rise) * w2]) / (2 * np.pi)
     h, kz0 = _far_face(layer, thickness, kx)

@@ -13,11 +13,11 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="processes are n
 
 @pytest.mark.parametrize("kind", fuzz.QUICK)
 def test_nothing_else_comes_out(kind):
-    """No other error, no warning of NumPy, no NaN without a word, nothing slow or large, no end of the process."""
-    found = fuzz.run(kind, fuzz.QUICK[kind])
-    assert len(found) >= fuzz.QUICK[kind]
-    assert sum(one["outcome"] == "answer" for one in found) > len(found) / 3
-    assert fuzz.bad_ones(found) == []
+    """No other error, no warning of NumPy, no NaN without a warning, nothing slow or large, no end of the process."""
+    cases = fuzz.run(kind, fuzz.QUICK[kind])
+    assert len(cases) >= fuzz.QUICK[kind]
+    assert sum(case["outcome"] == "answer" for case in cases) > len(cases) / 3
+    assert fuzz.failures(cases) == []
 
 
 def _named():
@@ -59,6 +59,6 @@ def test_an_end_of_a_process_is_counted(monkeypatch):
     monkeypatch.setattr(
         fuzz, "_limited", lambda: __import__("resource").setrlimit(__import__("resource").RLIMIT_CPU, (0, 0))
     )
-    found = fuzz.in_process("media", 3, 5)
-    assert [one["case"] for one in found] == ["media:3", "media:4"]
-    assert all(one["outcome"].startswith("end of the process") for one in found)
+    cases = fuzz.in_process("media", 3, 5)
+    assert [case["case"] for case in cases] == ["media:3", "media:4"]
+    assert all(case["outcome"].startswith("end of the process") for case in cases)

@@ -36,7 +36,7 @@ def random_sum(rng):
     step = 2 * np.pi / (n * dx)
     k = step * (first + np.arange(size)) - 0.7j
     x = rng.uniform(-1, 0) + dx * np.arange(rng.integers(1, n + 1))
-    line = paths.Contour(k, np.ones(size), step, first, 0.7, 1.0)
+    line = paths.Contour(k, np.ones(size), step, first, 0.7)
     h, right, left = (
         rng.normal(size=s) + 1j * rng.normal(size=s) for s in ((int(rng.integers(1, 90)), size), size, size)
     )
@@ -159,7 +159,7 @@ def test_spectra_of_many_angles_are_those_of_each(name):
 
 @pytest.mark.parametrize("name", SOURCES)
 def test_many_angles_are_mixed_from_a_few(name):
-    """A fan's spectra are, to the tolerance, the mixture of those at its nodes: at the ends and between."""
+    """The spectra of a beam at many angles are, to the tolerance, interpolated from those at its nodes: at the ends and between."""
     beam, rng, k0 = SOURCES[name], np.random.default_rng(4), 45.0
     angles = np.concatenate([[-89.9, 89.9, 0.0], rng.uniform(-89.9, 89.9, 150)])
     found = source_angles.interpolate_angles(beam, angles, k0, 1e-12)
@@ -208,7 +208,7 @@ def test_the_field_at_many_angles_is_that_of_each():
 
 
 def test_the_end_of_a_path_is_not_that_of_its_circles():
-    """What lies beyond a band is judged by the path's last nodes, however strong the nodes around single modes are."""
+    """What lies beyond a band is estimated from the contour's last nodes, however strong the nodes around single modes are."""
     k = np.linspace(1, 50, 60).astype(complex)
     line = paths.Contour(k, np.ones(60))
     with_discs = paths.Contour(np.concatenate([np.full(400, 5.0 + 0j), k]), np.ones(460), circles=400)

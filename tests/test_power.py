@@ -6,6 +6,7 @@ import warnings
 import mpmath as mp
 import numpy as np
 import pytest
+from panels import panels
 from scipy.optimize import brentq
 from sided import BULK, LAM, RHO, F
 
@@ -35,24 +36,22 @@ def transmitted_share(layers, frequency, fwhm, angle):
     Gauss panels on both sides of each resonance, graded towards it, and towards kx = 0.
     """
     k0, a = 2 * np.pi * frequency / 343.0, fwhm / 2 / np.sqrt(np.log(2))
-    some = k0 * np.concatenate([[0.0], np.geomspace(1e-7, 0.999, 300)])
-    values = [mismatch(layers, k, frequency) for k in some]
-    found = [
-        brentq(lambda k: mismatch(layers, k, frequency), some[i], some[i + 1], xtol=1e-18, rtol=1e-15)
+    coarse = k0 * np.concatenate([[0.0], np.geomspace(1e-7, 0.999, 300)])
+    values = [mismatch(layers, k, frequency) for k in coarse]
+    resonances = [
+        brentq(lambda k: mismatch(layers, k, frequency), coarse[i], coarse[i + 1], xtol=1e-18, rtol=1e-15)
         for i in np.flatnonzero(np.diff(np.sign(values)))
     ]
     graded = k0 * np.concatenate([[0.0], np.geomspace(1e-13, 1.0, 100)])
-    edges = np.unique(np.concatenate([[0.0, k0], graded, *(k + sign * graded for k in found for sign in (1, -1))]))
+    edges = np.unique(np.concatenate([[0.0, k0], graded, *(k + sign * graded for k in resonances for sign in (1, -1))]))
     edges = edges[(edges >= 0) & (edges <= k0)]
-    g, v = np.polynomial.legendre.leggauss(16)
-    width = np.diff(edges)[:, None] / 2
-    k, weight = (edges[:-1, None] + width * (1 + g)).ravel(), (width * v).ravel()
+    k, weight = panels(edges, 16)
     off = k0 * np.sin(np.radians(angle))
     launched = sum(np.exp(-((a * (k - side * off)) ** 2) / 2) for side in (1, -1)) * np.sqrt(k0**2 - k**2) * weight
     share = launched / launched.sum()
     strong = share > 1e-25
-    passes = np.array([1 / (1 + mismatch(layers, one, frequency) ** 2) for one in k[strong]])
-    return share[strong] @ passes, len(found)
+    passes = np.array([1 / (1 + mismatch(layers, kx, frequency) ** 2) for kx in k[strong]])
+    return share[strong] @ passes, len(resonances)
 
 
 def measured(layers, frequency, rtol):
@@ -73,9 +72,9 @@ def test_power_through_a_cavity_between_mirrors(beside, resonances):
     through which most of the power goes. What is missing from the reflection, in as narrow a minimum, is that power.
     """
     rtol, layers, frequency = 1e-5, [WATER, AIR_GAP, WATER], F * (1 + beside)
-    truth, found = transmitted_share(layers, frequency, 0.5, 3)
+    truth, count = transmitted_share(layers, frequency, 0.5, 3)
     (reflected, transmitted), told = measured(layers, frequency, rtol)
-    assert found == resonances
+    assert count == resonances
     assert transmitted == pytest.approx(truth, rel=rtol)
     assert reflected + transmitted == pytest.approx(1, abs=1e-9)
     assert told is None

@@ -1,5 +1,6 @@
 """The fast kernels against the plain formulas of `response.reference`, over random layers, cells and slabs."""
 
+import mpmath
 import numpy as np
 import pytest
 from closeness import RTOL, close
@@ -7,6 +8,7 @@ from closeness import RTOL, close
 import beamprop as bp
 from beamprop import conventions, response
 from beamprop.arrays import exponentials
+from beamprop.contour import sums
 from beamprop.media.values import layer_values
 from beamprop.modes import argument_principle
 from beamprop.response import cell, interior, layer, periods, recursion, reference, sampled_slab
@@ -138,6 +140,31 @@ def test_bloch_phases(size):
     from_trace = reference.bloch_phase(2 + 2 * h.astype(np.clongdouble)).astype(complex)
     signs = np.minimum(np.abs(b.reduced - from_trace), np.abs(b.reduced + from_trace))
     assert np.max(signs * np.abs(b.reduced)) < 1e-18 + 1e-15 * size
+
+
+@pytest.mark.parametrize("size", [1e-12, 1e-5, 0.5, 3, 1e4, 1e12])
+@pytest.mark.parametrize("imaginary", [0, 1e-14, 1e-7, 1])
+def test_both_parts_of_a_bloch_phase_and_its_eigenvalue_are_precise(size, imaginary):
+    """Against 40 digits: growth over many periods is as exact as the phase, and exactly 0 in a lossless pass band."""
+    rng = np.random.default_rng(8)
+    h = size * (rng.uniform(-1, 1, 40) + 1j * imaginary * rng.uniform(-1, 1, 40))
+    zero = np.zeros_like(h)
+    b = periods.bloch_phase(cell.Matrix(1.0, 2 * h, zero, zero, zero, None))
+    with mpmath.workdps(40):
+        for i, value in enumerate(h):
+            cosine = (1 + mpmath.mpc(value)) * (-1 if b.flip[i] else 1)
+            phase = mpmath.acos(cosine)
+            phase = -phase if phase.imag < 0 else phase
+            want = complex(phase)
+            assert abs(b.reduced[i] - want) < 1e-15 * abs(want) or abs(b.reduced[i] + want.conjugate()) < 1e-15 * abs(
+                want
+            )
+            assert b.reduced[i].imag == pytest.approx(want.imag, rel=2e-15, abs=1e-300)
+            eigenvalue = mpmath.exp(1j * mpmath.mpc(b.reduced[i]))
+            assert abs(b.eigenvalue[i] - complex(eigenvalue)) < 2e-15 * (1 + abs(want)) * abs(eigenvalue)
+            assert abs(b.less_one[i] - complex(eigenvalue - 1)) < 2e-15 * min(1, abs(want))
+    if not imaginary:
+        assert np.all(b.reduced.imag[(h.real > -2) & (h.real < 0)] == 0)
 
 
 @pytest.mark.parametrize("count", [1, 7, 450])
@@ -282,6 +309,32 @@ def test_sums_of_exponentials_by_tables(count, waves, monkeypatch):
     np.testing.assert_allclose(
         found, reference.over_positions(k, weights, x), rtol=0, atol=3e-13 * np.abs(weights).sum()
     )
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-10, 1e-3, 0.2])
+@pytest.mark.parametrize("count", [1, 63, 64, 1001])
+def test_plane_waves_by_tables(count, off):
+    """On even grids, on those that are even to printed digits, and on uneven ones; below the axis too."""
+    rng = np.random.default_rng(count)
+    k = rng.uniform(0, 50, 40) - 0.3j * rng.uniform(0, 1, 40)
+    x = -1.3 + 0.004 * (np.arange(count) + off * rng.uniform(-1, 1, count))
+    forward, backward = reference.plane_waves(k, x)
+    forth, back = sums._phases(k, x, True)
+    rounding = 1e-15 * (1 + np.abs(k).max() * np.abs(x).max())  # of phases, which are sums of two products
+    np.testing.assert_allclose(forth, forward, rtol=rounding)
+    np.testing.assert_allclose(back, backward, rtol=rounding)
+    assert sums._phases(k, x, False)[1] is None
+
+
+@pytest.mark.parametrize("count", [1, 5, 8, 9, 30])
+@pytest.mark.parametrize("first", [-13, -1, 0, 3, 9])
+def test_harmonics_folded_onto_an_fft(first, count):
+    """Bins beyond the harmonics keep what they hold, which is 0."""
+    rng = np.random.default_rng(count)
+    h, amplitude = rng.normal(size=(3, count)) + 0j, rng.normal(size=(2, 1, count)) * 1j
+    out = np.zeros((2, 3, 8), complex)
+    sums._fold(h, amplitude, first, out)
+    np.testing.assert_allclose(out, reference.folded(h * amplitude, first, 8), rtol=0, atol=1e-14)
 
 
 def test_logarithms():

@@ -1,4 +1,4 @@
-"""How the accuracy study judges: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
+"""How the accuracy study counts: what counts as broken, too sure and needless; the terms of the estimate; its command line."""
 
 import ast
 import importlib
@@ -46,15 +46,15 @@ def dataset(rows):
 @pytest.mark.parametrize("row", VERDICTS, ids=lambda row: f"{row[0]}-{'-'.join(sorted(row[6])) or 'right'}")
 def test_verdicts(row):
     v = report.verdicts(dataset([row]))
-    assert {name for name, which in v.items() if which[0]} - {"judged"} == row[6]
-    assert v["judged"][0] == (row[0] == "answered")
+    assert {name for name, which in v.items() if which[0]} - {"compared"} == row[6]
+    assert v["compared"][0] == (row[0] == "answered")
 
 
 def test_tables_count_and_list_what_is_needless():
     ds = dataset(VERDICTS)
     head, _, first = report.class_table(ds).splitlines()[:3]
     cells = dict(zip((c.strip() for c in head.split("|")), (c.strip() for c in first.split("|")), strict=True))
-    assert (cells["cases"], cells["refused"], cells["warned"], cells["judged"], cells["crashed"]) == (
+    assert (cells["cases"], cells["refused"], cells["warned"], cells["compared"], cells["crashed"]) == (
         "12",
         "2",
         "5",
@@ -100,8 +100,8 @@ def test_every_term_of_the_budget_is_in_the_table():
     [
         "a spectrum that is cut off",
         "rounding of a profile's samples",
-        "mixing of angles",
-        "brightness outside the window",
+        "interpolation over angles",
+        "peaks outside the window",
     ],
 )
 def test_terms_are_needed(name):
@@ -113,7 +113,7 @@ def test_terms_are_needed(name):
 
 
 def test_the_command_runs_one_case_and_one_class():
-    """What the user types; a case that is judged is listed only if something is to be said of it."""
+    """What the user types; a case that is compared is listed only if something is to be said of it."""
     done = subprocess.run(
         [sys.executable, "experiments/accuracy.py", "--case", "0", "--class", "nearly rigid half-space", "--count", "1", "--workers", "1"],
         cwd=ROOT, capture_output=True, text=True, check=True,
@@ -158,7 +158,7 @@ def taken_from_the_study(path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=FILES.get)
-def test_the_reference_uses_nothing_that_it_judges(path):
+def test_the_reference_uses_nothing_that_it_checks(path):
     """It sees definitions of media and sources alone, through the package's public names."""
     names, modules = taken_from_the_package(path)
     assert not modules

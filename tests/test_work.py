@@ -292,7 +292,7 @@ def test_in_a_gap_the_faces_modes_do_not_depend_on_the_periods():
 
 def test_a_hundred_thousand_periods_with_gaps_are_answered():
     """A question of the accuracy study that was refused; there it is compared with the truth."""
-    row = comparison.judge(2331)
+    row = comparison.compare_with_truth(2331)
     assert row["status"] == "answered"
     assert row["error"] < row["rtol"]
     assert row["estimate"] < row["rtol"]

@@ -1,1 +1,1 @@
-"""Contours of integration over kx: paths, sums, their choice, and the error estimate."""
+"""Contours of integration over kx: nodes, sums, their choice, and the error estimate."""

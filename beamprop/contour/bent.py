@@ -1,6 +1,6 @@
 """A bent contour on which the field keeps rtol: plans are changed until two contours agree.
 
-The loop evaluates two contours and estimates the error; `next_plan`, a pure function of what came of it, says what to try next.
+The loop evaluates two contours and estimates the error; `next_plan`, a pure function of the estimate, makes the plan to try next.
 """
 
 from __future__ import annotations
@@ -15,28 +15,27 @@ from .paths import BentPlan
 from .quadrature import Quadrature
 from .search import Planned, Search, pair_of_contours, refusal, shallower, too_many, too_many_plane_waves, with_poles
 
-#: How often a plan is changed before the requested rtol is given up: a band that grows by half each time grows 200-fold.
+#: The most plans that are tried before the requested rtol is given up: a band that grows by half each time grows 1.5^13 = 200-fold.
 ATTEMPTS = 14
-#: How often of these a plan comes nearer to the axis to leave fewer poles between: modes of a lossless slab lie on the axis
-#: itself, and their number does not fall; with loss a depth 3^6 times smaller leaves those that are all but lossless.
+#: How many of these may be nearer to the axis by a factor of 3, so that fewer poles lie between. Modes of a lossless slab lie on the axis
+#: itself, and two tries show that their number does not fall; with loss a depth 3^6 = 700 times smaller leaves the nearly lossless ones.
 SHRINKS, LOSSLESS_SHRINKS = 6, 2
-#: After more plans than this in a row that do not halve the error what is left is rounding.
+#: After more plans than this in a row that do not halve the error it is given up: 0.6^3 times as deep, a contour magnifies rounding by
+#: exp(0.2 DEEPEST) = 6 at most.
 MOST_IN_VAIN = 3
-#: The share of rtol that may lie beyond the end of the band, and that is left to images.
-SHARE = 0.3
-#: Above this an estimate does not say how many decades images have to fall by.
+#: Above this an estimate does not tell by how many decades images have to fall.
 MEANINGLESS = 1e6
 
 
 class Attempts(NamedTuple):
-    """What came of the plans that were tried."""
+    """How the plans that were tried have fared."""
 
     shrinks: int  #: how often a plan may still come nearer to the axis
     made: int = 0
     in_vain: int = 0  #: plans in a row, up to the last, that did not halve the smallest error
 
     def after(self, worst: float, smallest: float) -> Attempts:
-        """With one more plan, of an error `worst`, the smallest before it being `smallest` (inf: there was none)."""
+        """The attempts after a plan with the error `worst`; `smallest` is the least of the plans before it, inf for the first."""
         return Attempts(self.shrinks, self.made + 1, self.in_vain + 1 if worst > 0.5 * smallest else 0)
 
 
@@ -55,38 +54,41 @@ def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rto
     Returns
     -------
     BentPlan or None
-        None where rtol is kept, and where no other plan has come nearer to it for long.
+        None where rtol is kept, or where MOST_IN_VAIN plans in a row have not come nearer to it.
     """
     if worst <= rtol or attempts.in_vain > MOST_IN_VAIN:
         return None
-    if edge > SHARE * rtol:
+    if edge > error.SHARE * rtol:
         return plan._replace(band=plan.band * 1.5)
     if attempts.in_vain:  # a wider window does not help: rounding, magnified by exp(depth X)
         return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
-    more = math.log(min(worst, MEANINGLESS) / (SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)
+    more = math.log(min(worst, MEANINGLESS) / (error.SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)
     return plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
 
 
 def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadrature, Planned]:
-    """The first bent contour that keeps rtol, or the best of those that were tried; and the plan that came last.
+    """The first bent contour that keeps rtol, or the most accurate one that was tried; and the last plan.
 
-    Errors are over the largest |p| of each plane. Where that lies far outside of the window, the field inside is still made as
-    accurate by its own size as some thousand plane waves make it. Where spectra are cut off, contours in stretches come first.
+    Errors are over the largest |p| of each plane. Where that peak lies far outside of the window, the field inside is brought to
+    rtol by its own size if MOST_WIDENED plane waves do it. Where spectra are cut off, contours in stretches are tried first.
     """
     checks, rtol = search.checks, search.rtol
     best: Quadrature | None = None
-    by_window: Checks | None = None  # the checks before peaks far outside were looked for
+    by_window: Checks | None = None  # the checks without peaks far outside, once these have been looked for
     attempts = Attempts(LOSSLESS_SHRINKS if search.slab.lossless else SHRINKS)
     while attempts.made < ATTEMPTS and not too_many_plane_waves(planned.plan):
         planned, attempts = _told_apart(search, planned, attempts)
         if planned.unclear:
             break
-        best = best or _in_stretches_first(search)
+        if best is None and search.ends.size:  # where spectra are cut off a contour meets the axis
+            best = in_stretches.best_in_stretches(search, crowded=False).best
         if best is not None and best.worst <= rtol:
             return best, planned
         compared = error.compare(checks, pair_of_contours(search, planned), rtol)
-        if best is not None and by_window is None and compared.estimate.worst > rtol:  # a wider window alone did not do
-            by_window, compared = compared.checks, _with_wider_look(search, planned, compared)
+        # widening the first plan did not do: is the peak outside?
+        if best is not None and by_window is None and compared.estimate.worst > rtol:
+            by_window, checks = compared.checks, peak_outside.with_wider_look(search, planned, compared.checks)
+            compared = compared._replace(checks=checks, estimate=error.estimate(checks, *compared[:2]))
         checks, (worst, edge) = compared.checks, (compared.estimate.worst, compared.estimate.edge)
         attempts = attempts.after(worst, best.worst if best is not None else math.inf)
         if best is None or worst < best.worst:
@@ -101,7 +103,7 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
 
 
 def _told_apart(search: Search, planned: Planned, attempts: Attempts) -> tuple[Planned, Attempts]:
-    """The poles of a plan that comes nearer to the axis as often as it may, until they can be told apart."""
+    """The plan with its poles, nearer to the axis as often as allowed, until they can be separated."""
     planned = with_poles(search, planned)
     while planned.unclear and attempts.shrinks and attempts.made < ATTEMPTS:
         attempts = attempts._replace(shrinks=attempts.shrinks - 1, made=attempts.made + 1)
@@ -112,11 +114,6 @@ def _told_apart(search: Search, planned: Planned, attempts: Attempts) -> tuple[P
     return planned, attempts
 
 
-def _in_stretches_first(search: Search) -> Quadrature | None:
-    """The best contour that comes up to the axis where spectra are cut off."""
-    return in_stretches.best_in_stretches(search, crowded=False).best if search.ends.size else None
-
-
 def _without_any(search: Search, planned: Planned) -> Quadrature:
     """A contour in stretches for a periodic slab whose poles cannot be told apart, or the refusal of the question."""
     if planned.unclear and search.slab.periodic:
@@ -125,24 +122,17 @@ def _without_any(search: Search, planned: Planned) -> Quadrature:
 
 
 def _quadrature(planned: Planned, compared: Compared) -> Quadrature:
-    first = compared.first
-    circles = bool(planned.poles.poles)
-    return Quadrature(first.contour, compared.estimate.budget, circles=circles, amplitudes=first.amplitudes)
+    contour, _, amplitudes, _ = compared.first
+    return Quadrature(contour, compared.estimate.budget, circles=bool(planned.poles.poles), amplitudes=amplitudes)
 
 
-def _with_wider_look(search: Search, planned: Planned, compared: Compared) -> Compared:
-    """The same contours with the largest |p| of each plane looked for far outside of the window."""
-    checks = peak_outside.with_wider_look(search.slab, compared.checks, search.reach, planned.plan, planned.poles)
-    return compared._replace(checks=checks, estimate=error.estimate(checks, compared.first, compared.second))
-
-
-#: How often a contour that keeps rtol by a peak far outside is widened for the window alone, and the most plane waves it may have
-#: then: 80 kB of the response a plane.
+#: How often a contour that keeps rtol by a peak far outside is widened for the field inside the window, and the most plane waves that it
+#: may have then, a response of 80 kB a plane. A plain choice: rtol does not promise that accuracy, which may not cost much.
 WIDENED, MOST_WIDENED = 5, 5_000
 
 
 def _good_by_itself(search: Search, planned: Planned, checks: Checks, best: Quadrature) -> tuple[Quadrature, Planned]:
-    """Widen a contour that keeps rtol by the plane's peak far outside until it does by the largest |p| inside, if it soon does."""
+    """Widen a contour that keeps rtol over a peak far outside until it keeps rtol over the largest |p| inside, if it soon does."""
     before = math.inf
     for _ in range(WIDENED):
         compared = error.compare(checks, pair_of_contours(search, planned), math.inf)  # dark planes are known
@@ -150,11 +140,11 @@ def _good_by_itself(search: Search, planned: Planned, checks: Checks, best: Quad
         if worst <= search.rtol:
             return _quadrature(planned, compared), planned
         more = 1.5 * math.log(min(worst, MEANINGLESS) / (0.1 * search.rtol)) / plan.depth
-        if 0.1 * before < worst < 1 or compared.estimate.edge > SHARE * search.rtol:
+        if 0.1 * before < worst < 1 or compared.estimate.edge > error.SHARE * search.rtol:
             break
         if worst < before:
             best = _quadrature(planned, compared)._replace(budget=best.budget)
         before, planned = worst, planned._replace(plan=plan._replace(window=plan.window + more))
-        if planned.plan.other().nodes > MOST_WIDENED:
+        if planned.plan.second_plan().nodes > MOST_WIDENED:
             break
     return best, planned

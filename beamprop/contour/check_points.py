@@ -1,4 +1,4 @@
-"""Where two contours are compared: positions and planes that stand for all, dark planes among them."""
+"""The positions and planes at which two contours are compared, dark planes among them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from . import near_normal
 
 
 class Checks(NamedTuple):
-    """Where two contours are compared."""
+    """The points at which two contours are compared, with what their fields are made of."""
 
     sources: AngleInterpolation
     k0: float
@@ -22,18 +22,18 @@ class Checks(NamedTuple):
     x: np.ndarray
     z: np.ndarray
     guided: bool  #: whether the transfer function has guided modes (none without a slab)
-    peaks_outside: np.ndarray  #: |p| where each requested beam lands, if that is elsewhere, else 0; (A, Z)
-    dark: (
-        np.ndarray | None
-    )  #: whether a plane is dark to rounding for each requested beam, (A, Z); None until it matters
+    peaks_outside: np.ndarray  #: |p| where each requested beam lands outside of the positions, else 0; (A, Z)
+    #: whether a plane is dark to rounding for each requested beam, (A, Z); None before it is determined
+    dark: np.ndarray | None
 
 
 def check_points(
     x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, many: bool = False
 ) -> tuple[np.ndarray, np.ndarray]:
-    """A few positions and planes that stand for all: the ends, the faces, some between, and the beam's own reach.
+    """Positions and planes for a comparison: the ends, the slab's faces, places between, and the source's width about its middle.
 
-    Half as many positions for `many` mixed beams, each of which is looked at through the others too.
+    For `many` interpolated beams half as many positions, since neighbouring beams complement each other. Their numbers are a plain
+    choice: each position costs a column of two sums, and `error.MARGIN` covers larger differences between them.
     """
     picked, around = (17, 19) if many else (31, 41)
     zs = np.sort(z)
@@ -47,14 +47,14 @@ def check_points(
 
 
 def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:
-    """Positions that lie ever closer towards both ends, down to the source's size, where those picked are further apart.
+    """Positions that lie ever closer towards both ends, down to the source's width, where those picked are farther apart.
 
-    What a finite step in kx adds are images of the beam, about as wide as the source, that come in from both ends.
+    Images of the beam by a finite step in kx come in from both ends, about as wide as the source.
     """
     apart = float(np.max(np.diff(picked), initial=0.0))
     if apart <= 2 * source:
         return np.empty(0)
-    octaves = math.log2(apart / source)
+    octaves = math.log2(apart / source)  # four positions an octave up to twenty, and at least two an octave
     steps = np.geomspace(source, apart, 2 + math.ceil(min(4 * octaves, max(20, 2 * octaves))))
     wanted = np.concatenate([picked[0] + steps, picked[-1] - steps])
     order = np.sort(x)
@@ -63,18 +63,18 @@ def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarra
 
 # --- dark planes ------------------------------------------------------------------------------------------
 
-#: Planes that are compared besides: so many of the darkest for each of three beams, if they are darker by this than others within
-#: half a wavelength in front and behind: a standing wave of two waves of ratio 0.54 or nearer to 1 has such nodes.
+#: Up to DARKEST planes for each of three beams are compared too, if |p| is DARKER times that within half a wavelength in front and
+#: behind: nodes of standing waves, of two waves with amplitudes in the ratio (1 - 0.3)/(1 + 0.3) = 0.54 or nearer to 1.
 DARKEST, DARKER = 4, 0.3
-#: How far beside a plane it is looked whether it is brighter there, in wavelengths in front of the slab; and how much darker a
-#: plane may be before what is left on it is rounding: 1e-11 of what stands a thousandth of a wavelength beside it.
+#: A plane is dark to rounding if |p| is LIGHTLESS times that BESIDE wavelengths in front and behind: next to a node a standing wave has
+#: risen to sin(2 pi BESIDE) = 6e-3 of its antinode, and 1e-11 of that, 300 EPS of the antinode, is rounding of the response.
 BESIDE, LIGHTLESS = 1e-3, 1e-11
 
 
 def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
-    """Planes at nodes of standing waves: errors are over the largest |p| of each plane, so that these ask for the most.
+    """Planes at nodes of standing waves, where errors over the largest |p| of the plane are largest.
 
-    By the strong plane waves of some of the beams: what is dark for all of them is dark for the beam (Parseval).
+    By the strong plane waves of three beams: a plane that is dark for all of them is dark for the beam (Parseval).
     """
     order = np.sort(z)
     darkest: list[float] = []
@@ -85,14 +85,14 @@ def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFun
         for i in np.argsort(darker, kind="stable"):
             if darker[i] > DARKER or len(picked) == DARKEST:
                 break
-            if all(abs(order[i] - plane) > 0.1 / k0 for plane in picked):
+            if all(abs(order[i] - plane) > 0.1 / k0 for plane in picked):  # not the same node again
                 picked.append(float(order[i]))
         darkest += picked
     return np.unique(darkest)
 
 
 def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
-    """Sizes on sorted planes over the largest within a window in front or behind, whichever is less: small at a node only."""
+    """Sizes on sorted planes over the lesser of the largest within a window in front and behind: small at a node only."""
     bins = np.floor((z - z[0]) / (window / 2)).astype(int)
     bins = np.unique(bins, return_inverse=True)[1] if bins[-1] > 4 * z.size else bins
     largest = np.zeros(bins[-1] + 5)
@@ -105,7 +105,7 @@ def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
 
 
 def with_dark_planes(checks: Checks) -> Checks:
-    """Tell which planes hold no more than rounding beside what stands next to them: p on a perfect wall."""
+    """Determine the planes that are dark to rounding, such as the pressure-release face of a perfect wall."""
     sources, k0, transfer, z = checks.sources, checks.k0, checks.transfer, checks.z
     step = BESIDE * 2 * np.pi / k0
     near = np.concatenate([z, np.maximum(z - step, sources.beam.z0), z + step])
@@ -120,15 +120,15 @@ def with_dark_planes(checks: Checks) -> Checks:
 def _strengths(beam: Beam, k0: float, transfer: TransferFunction, z: np.ndarray) -> np.ndarray:
     """The largest |S h| of a beam's strong plane waves on each plane, (Z,)."""
     k = strong_waves(beam, k0)
-    # even in kx; through a layer of density 0 passes kx = 0 alone
+    # H is even in kx; not at kx = 0, the only plane wave that passes a layer of density 0
     h = np.abs(transfer(np.maximum(np.abs(k), near_normal.NEAREST * k0) + 0j, z))
     return np.max(np.nan_to_num(h * np.abs(beam.spectrum(k, k0))), axis=1)
 
 
 def strong_waves(beam: Beam, k0: float) -> np.ndarray:
-    """A few strong plane waves of a beam that propagate, or nearly."""
+    """Nine strong plane waves of a beam, from end to end of the band in which |S| is 0.3 of the largest, that propagate."""
     lo, hi = beam.band(k0, 0.3)
-    if not beam.entire:  # the band of a rotated beam is all that propagates: its strong part is that of its waist
+    if not beam.entire:  # its band is all that propagates: the strong part is looked for
         k = np.linspace(-0.999, 0.999, 4001) * k0
         size = np.abs(beam.spectrum(k, k0))
         lo, hi = k[np.flatnonzero(size >= 0.3 * size.max())[[0, -1]]]
@@ -142,7 +142,7 @@ def _neighbours(at: np.ndarray, known: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def interpolated(at: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values (P, ...) at `known`, increasing, brought to `at`: the less of both neighbours'."""
+    """Values (P, ...) at `known`, increasing, carried to `at`: the lesser of both neighbours'."""
     above, below = _neighbours(at, known)
     return np.minimum(values[above], values[below])
 

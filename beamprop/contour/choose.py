@@ -1,7 +1,4 @@
-"""The choice of a contour for a field and an rtol.
-
-Everything here is for one frequency; a `SampledSlab` holds what does not change from contour to contour.
-"""
+"""The choice of a contour for a field and an rtol, at one frequency."""
 
 from __future__ import annotations
 
@@ -36,28 +33,28 @@ def choose_contour(
     rtol: float,
     guided: bool = True,
 ) -> Quadrature:
-    """The cheapest contour on which the field keeps rtol, its error estimated by a second contour of other parameters.
+    """The cheapest contour on which the field keeps rtol, its error estimated by a second contour.
 
-    An even grid of many points gets a pair of straight contours for FFTs, compared with a bent contour; any other a bent contour,
-    compared with a second one. `guided` says whether the transfer knows guided modes (none without a slab).
+    An even grid of many points gets a straight contour for FFTs, compared with a bent one; any other grid a bent contour,
+    compared with a second one. `guided` says whether the transfer function has guided modes (none without a slab).
     """
-    reach = _extent(s, sources, x, z, rtol)
+    extent = _extent(s, sources, x, z, rtol)
     many = sources.weights is not None and sources.requested.size > ESTIMATED
-    points, planes = check_points.check_points(x, z, sources.beam.centre, reach.source, s.thickness, many)
+    points, planes = check_points.check_points(x, z, sources.beam.centre, extent.source, s.thickness, many)
     if z.size > planes.size:
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
-    seen = survey(s, sources, transfer, points, planes, reach, rtol)
+    seen = survey(s, sources, transfer, points, planes, extent, rtol)
     checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
-    return _chosen(s, checks, reach, seen, x, rtol)._replace(checked_planes=planes)
+    return _chosen(s, checks, extent, seen, x, rtol)._replace(checked_planes=planes)
 
 
-def _chosen(s: SampledSlab, checks: Checks, reach: Extent, seen: Survey, x: np.ndarray, rtol: float) -> Quadrature:
+def _chosen(s: SampledSlab, checks: Checks, extent: Extent, seen: Survey, x: np.ndarray, rtol: float) -> Quadrature:
     if not checks.sources.beam.entire:
-        return propagating_quadrature(s, checks, reach, rtol, seen.sharp)
-    search, planned = begin(s, checks, reach, rtol, seen)
+        return propagating_quadrature(s, checks, extent, rtol, seen.sharp)
+    search, planned = begin(s, checks, extent, rtol, seen)
     if s.backward_branch is not None and checks.guided:
         return quadrature_in_stretches(search, crowded=False)
-    tried = None  # the plan with whose second contour straight ones were compared
+    tried = None  # the plan whose second contour straight ones were compared with
     if not (too_many_plane_waves(planned.plan) or search.ends.size):
         tried = planned.plan
         straight, planned = quadrature_on_straight_contours(search, planned, x)
@@ -72,17 +69,16 @@ def _chosen(s: SampledSlab, checks: Checks, reach: Extent, seen: Survey, x: np.n
 def _extent(s: SampledSlab, sources: AngleInterpolation, x: np.ndarray, z: np.ndarray, rtol: float) -> Extent:
     tolerance = BELOW_RTOL * rtol
     beam = sources.beam
-    source = beam.reach(tolerance)
-    extent = float(np.max(np.abs(x - beam.centre), initial=0.0))
+    farthest = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     band = min(sources.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
-    return Extent(s.k0, s.nearest_branch, band, max(extent, source), source, path)
+    return Extent(s.k0, s.nearest_branch, band, farthest, beam.reach(tolerance), path)
 
 
 def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:
-    """|kx| beyond which waves have decayed to `tolerance` on their way, in the half-spaces, to the nearest plane.
+    """|kx| beyond which waves have decayed to `tolerance` on their way through half-spaces to the nearest plane.
 
-    What a slab does to them is not known here: it shows in the band's edge.
+    Their transmission by a slab shows in the band's end.
     """
     nearest = float(z.min())
     way = min(nearest, 0.0) - z0 + max(0.0, nearest - s.thickness)

@@ -1,9 +1,11 @@
-"""The error of a field on a contour, estimated by a second contour that shares no number with the first.
+"""The error of a field on a contour, estimated by a second contour of other parameters.
 
-Their difference at a few planes and positions is the error of the coarser one. What both would miss is added: the end of
-the band, and a spectrum that ends inside a contour. The second contour's response is taken at kx and w moved in their last bits,
-so that rounding which both share shows too. Errors are over the largest |p| of the plane, which may lie far from the
-requested positions: a beam is looked for where it lands, too.
+Their difference at the points of `check_points` is the error of the coarser contour. Errors that both contours share are added: the
+end of the band, and a spectrum that ends inside a contour. The second contour's response is evaluated at kx and w moved in their
+last bits, so that its rounding shows in the difference too. Errors are over the largest |p| of the plane, which may lie far from
+the requested positions: it is looked for where the beam lands, too.
+
+`experiments/accuracy.py` measures estimates over true errors; with `--terms` it switches off each term in turn.
 """
 
 from __future__ import annotations
@@ -21,12 +23,14 @@ from .check_points import Checks, with_dark_planes, worse_neighbours
 from .paths import EPS, Contour
 from .sums import beam_amplitudes
 
-#: How far kx and w are moved, relatively: the rounding of a response shows in the change from one kx to another that is a few units
-#: of the last place away.
+#: Relative change of kx and w at which a response rounds anew: a few units of the last place. The response itself changes by SHIFT
+#: times its phase, which counts as error too.
 SHIFT = 4 * EPS
-#: Planes on which the largest |p| is below this are dark: products of what is left there with amplitudes underflow (2e-308).
+#: Planes on which the largest |p| is below this are dark: 1e-16 of what adds up to it is hardly above the smallest normal number, 2e-308,
+#: below which digits are lost.
 DARK = 1e-290
-#: What stands for the error at all positions and planes, over the largest difference at those that are compared.
+#: Estimate over the largest difference at the points that are compared: between these the difference may be larger. A plain choice:
+#: more makes needless warnings, less estimates below the error, both of which `experiments/accuracy.py` counts.
 MARGIN = 1.5
 
 
@@ -38,11 +42,11 @@ class ErrorBudget(NamedTuple):
 
     difference: np.ndarray  #: of the fields on two contours
     samples_rounding: np.ndarray  #: of a sampled profile, shared by both contours
-    cut_spectrum: np.ndarray  #: what is missing where a spectrum ends inside the contour
-    angle_interpolation: np.ndarray  #: of the beams that are interpolated, seen on some that are summed
-    band_end: np.ndarray  #: what lies beyond the end of the contour
+    cut_spectrum: np.ndarray  #: plane waves beyond the end of a spectrum inside the contour
+    angle_interpolation: np.ndarray  #: of interpolated beams, seen on five that are also summed
+    band_end: np.ndarray  #: plane waves beyond the end of the contour
     long_phases: np.ndarray  #: rounding of k0 and of lengths, shared by both contours
-    low_rank: np.ndarray  #: what planes gain that are combinations of others
+    low_rank: np.ndarray  #: of planes that are combinations of other planes
 
     @property
     def total(self) -> np.ndarray:
@@ -51,7 +55,7 @@ class ErrorBudget(NamedTuple):
 
     @property
     def worst(self) -> ErrorBudget:
-        """That of the beam with the largest total, (1,); a total that is nan is not known."""
+        """The budget of the beam with the largest total, (1,); an unknown total, nan, is no largest one."""
         return self.taken([int(np.argmax(np.where(np.isnan(self.total), -np.inf, self.total)))])
 
     @property
@@ -64,7 +68,7 @@ class ErrorBudget(NamedTuple):
         return ErrorBudget(*(term[beams] for term in self))
 
     def worse(self, second: ErrorBudget) -> ErrorBudget:
-        """That of the beam with the largest total in both, (1,)."""
+        """The budget of the beam with the largest total in both, (1,)."""
         return ErrorBudget(*(np.concatenate(pair) for pair in zip(self, second, strict=True))).worst
 
 
@@ -86,22 +90,22 @@ def uniform_budget(beams: int, value: float) -> ErrorBudget:
 
 
 class Sampled(NamedTuple):
-    """A contour, and its response at the planes that are compared."""
+    """A contour, and its response on the planes where contours are compared."""
 
     contour: Contour
     h: np.ndarray
     amplitudes: tuple[np.ndarray, np.ndarray]  #: of the beams that are summed
-    fields: np.ndarray | None = None  #: their p at the positions that are compared, (B, Z, X), if it is known
+    fields: np.ndarray | None = None  #: their p at the positions of the checks, (B, Z, X), where it is computed already
 
 
 def fields_of(checks: Checks, sampled: Sampled) -> np.ndarray:
-    """p of the beams that are summed at the positions that are compared: (B, Z, X)."""
+    """p of the beams that are summed at the positions of the checks: (B, Z, X)."""
     x = checks.x - checks.sources.beam.centre
     return np.asarray(sums.direct_sum(sampled.contour, sampled.h, *sampled.amplitudes, x))
 
 
 def sampled(checks: Checks, contour: Contour, moved: bool) -> Sampled:
-    """The response at the planes that are compared, `moved` in its last bits or not."""
+    """A contour with its response on the planes of the checks, at kx and w `moved` in their last bits or not."""
     check_contour(contour.k.size, checks.sources.angles.size, checks.z.size)
     h = checks.transfer(contour.k, checks.z, SHIFT if moved else 0.0)
     return Sampled(contour, h, beam_amplitudes(checks.k0, checks.sources, contour))
@@ -111,7 +115,7 @@ class Estimate(NamedTuple):
     """The estimated error of the first of two contours."""
 
     budget: ErrorBudget
-    edge: float  #: the most that lies beyond the end of either, over the largest |p| of its plane
+    edge: float  #: the largest band end of both contours, over the largest |p| of its plane
 
     @property
     def worst(self) -> float:
@@ -120,7 +124,7 @@ class Estimate(NamedTuple):
 
 
 class Compared(NamedTuple):
-    """Two contours, the estimated error of the first, and the checks by which it was made."""
+    """Two contours, the estimated error of the first, and the checks that it was made with."""
 
     first: Sampled
     second: Sampled
@@ -129,29 +133,32 @@ class Compared(NamedTuple):
 
 
 def compare(checks: Checks, contours: tuple[Contour, Contour], rtol: float) -> Compared:
-    """Estimate the error of the first of two contours; planes dark to rounding are told apart where it is above `rtol`."""
+    """Estimate the error of the first of two contours; planes dark to rounding are searched for only where it is above `rtol`."""
     first, second = sampled(checks, contours[0], False), sampled(checks, contours[1], True)
-    found = estimate(checks, first, second)
-    if found.worst > rtol and checks.dark is None:
+    error = estimate(checks, first, second)
+    if error.worst > rtol and checks.dark is None:
         checks = with_dark_planes(checks)
-        found = estimate(checks, first, second)
-    return Compared(first, second, found, checks)
+        error = estimate(checks, first, second)
+    return Compared(first, second, error, checks)
 
 
-#: Of more requested beams than this so many are compared, spread evenly over the angles; those between take the worse neighbour's error.
+#: The share of rtol that a plan allows for the end of the band, and for images; the rest is for the terms that no plan changes.
+SHARE = 0.3
+#: Of more requested beams than this so many are compared, spread evenly over the angles; those between take their worse neighbour's error.
+#: Twice the thirty nodes of a usual interpolation over angles: they resolve how the error changes with the angle.
 ESTIMATED = 64
 
 
 def estimate(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
-    """Estimated error of the first contour over the largest |p| of each plane, on the worst plane of each requested beam."""
+    """Estimated error of the first contour, on the worst plane of each requested beam, over the largest |p| of the plane."""
     requested = checks.sources.requested
     if checks.sources.weights is None or requested.size <= ESTIMATED:
         return _on_worst_planes(terms_by_plane(checks, first, second))
     chosen = checks.sources.spread(ESTIMATED)
     dark = None if checks.dark is None else checks.dark[chosen]
     part = checks._replace(sources=checks.sources.taken(chosen), peaks_outside=checks.peaks_outside[chosen], dark=dark)
-    found = _on_worst_planes(terms_by_plane(part, first, second))
-    return found._replace(budget=found.budget.taken(worse_neighbours(requested, requested[chosen], found.budget.total)))
+    error = _on_worst_planes(terms_by_plane(part, first, second))
+    return error._replace(budget=error.budget.taken(worse_neighbours(requested, requested[chosen], error.budget.total)))
 
 
 def _on_worst_planes(by_plane: Estimate) -> Estimate:
@@ -164,7 +171,8 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     """The terms of the error of the first contour by requested beam and plane, (A, Z)."""
     sources = checks.sources
     x = checks.x - sources.beam.centre
-    extremes = _extreme_beams(sources)
+    # interpolated beams that are also summed: the extreme angles, where interpolation errs most, and three between
+    extremes = np.empty(0, int) if sources.weights is None else sources.spread(5)
     summed, themselves = _summed(checks, first, extremes, x)
     a = sources.interpolated_to(summed)
     b = sources.interpolated_to(fields_of(checks, second) if second.fields is None else second.fields)
@@ -174,39 +182,35 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     zero = np.zeros(largest.shape)
     with np.errstate(invalid="ignore", over="ignore"):
         apart = np.max(np.abs(a - b), axis=2)
-        cut = interpolation = end = other_end = zero
+        cut = interpolation = end = first_end = zero
         if sources.beam.entire:
             cut = _of_requested(sources, _cut_off(checks, first, float(np.max(np.abs(x)))))
-            end, other_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
-        if extremes.size:
+            end, first_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
+        if extremes.size:  # thrice, for five angles may miss the largest error
             interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
         source = _source_rounding(checks.k0, sources, first)
         apart, source, cut, interpolation = (_weighed(v / scale, seen) for v in (apart, source, cut, interpolation))
-        end, other_end = (np.where(seen, v / scale, 0.0) for v in (end, other_end))
-    # both contours share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase
+        end, first_end = (np.where(seen, v / scale, 0.0) for v in (end, first_end))
+    # both contours share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase,
+    # and four of the numbers themselves
     way = float(np.max(np.abs(x)) + np.max(checks.z) - sources.beam.z0)
     phases = np.full(largest.shape, EPS * (4 + checks.k0 * way))
     budget = ErrorBudget(apart, source, cut, interpolation, end, phases, low_rank=zero)
-    return Estimate(budget, float(np.max(np.maximum(end, other_end))))
+    return Estimate(budget, float(np.max(np.maximum(end, first_end))))
 
 
 def _weighed(term: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """A term with its margin, 0 on dark planes; what is not finite is infinite."""
+    """A term with its margin, 0 on dark planes, and infinite where it is not finite."""
     return np.where(seen, MARGIN * np.nan_to_num(term, nan=np.inf, posinf=np.inf), 0.0)
 
 
 def _largest(checks: Checks, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The largest |p| of each plane (A, Z) by two fields (A, Z, X), where the beam lands too."""
+    """The largest |p| of each plane (A, Z): the lesser of two fields' (A, Z, X), or the peak where the beam lands."""
     return np.maximum(np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2)), checks.peaks_outside)
 
 
-def _extreme_beams(sources: AngleInterpolation) -> np.ndarray:
-    """Indices of interpolated beams that are summed by themselves too: the extremes, where interpolation errs most, and between."""
-    return np.empty(0, int) if sources.weights is None else sources.spread(5)
-
-
 def _summed(checks: Checks, contour: Sampled, extremes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Fields (B, Z, X) of the beams that are summed, and of the `extremes` by themselves, in one product."""
+    """Fields (B, Z, X) of the beams that are summed, and of the beams at `extremes`, in one product."""
     sources, (right, left) = checks.sources, contour.amplitudes
     if extremes.size:
         beams = AngleInterpolation(sources.beam, sources.requested[extremes])
@@ -222,10 +226,10 @@ def _of_requested(sources: AngleInterpolation, bound: np.ndarray) -> np.ndarray:
 
 
 def _source_rounding(k0: float, sources: AngleInterpolation, first: Sampled) -> np.ndarray:
-    """What rounding of a sampled source brings to each plane, on both contours alike; (Z,).
+    """Error on each plane, (Z,), by the rounding of a sampled source, the same on both contours.
 
-    The less of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
-    (Parseval). Of many angles the outermost stand for all, |kx - k0 sin(angle)| is largest there.
+    The lesser of two bounds: all plane waves in phase; or, as white noise of power N over kx, (1/2 pi) integral N |h|^2 dkx
+    (Parseval). The outermost angles bound all: |kx - k0 sin(angle)| is largest there.
     """
     h, weight, bounds = np.abs(first.h), 2 * np.abs(first.contour.weight), [np.zeros(first.h.shape[0])]
     for angle in {float(sources.angles.min()), float(sources.angles.max())}:
@@ -234,11 +238,14 @@ def _source_rounding(k0: float, sources: AngleInterpolation, first: Sampled) -> 
             coherent, white = rounding(k, k0)
             with np.errstate(over="ignore", invalid="ignore"):
                 bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
-    return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # the largest of many positions
+    return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # of 1e4 normal deviates the largest is 4
 
 
 def _beyond(end: Sampled) -> np.ndarray:
-    """Size of what lies beyond the end of a contour: its last two tenths, continued geometrically; (B, Z)."""
+    """Size of the plane waves beyond the end of a contour, (B, Z): its last two tenths, continued geometrically.
+
+    The ratio of a tenth to the one before is taken to be at most 0.95, with 19 times the last tenth beyond; the factor 2 is a margin.
+    """
     right, left = end.amplitudes
     if end.contour.closed:
         return np.zeros((right.shape[0], end.h.shape[0]))
@@ -252,10 +259,10 @@ def _beyond(end: Sampled) -> np.ndarray:
 
 
 def _cut_off(checks: Checks, first: Sampled, extent: float) -> np.ndarray:
-    """Size of what is missing where a spectrum ends inside a contour (samples too coarse for their profile); (B, Z).
+    """Size of the plane waves beyond the end of a spectrum inside a contour (samples too coarse for their profile); (B, Z).
 
     |w S h e^{ikx}| at the last node or above it on the real axis, where the cut is defined, times the nodes that would fit between
-    them: on a long way along z waves below the axis have died when those on the axis have not.
+    them: over a long way along z waves below the axis decay, and those on the axis do not.
     """
     contour, sources, k0 = first.contour, checks.sources, checks.k0
     missing = np.zeros((first.amplitudes[0].shape[0], first.h.shape[0]))
@@ -276,6 +283,6 @@ def _cut_off(checks: Checks, first: Sampled, extent: float) -> np.ndarray:
 
 
 def _after(contour: Contour, j: int) -> np.ndarray:
-    """Two places beyond node j."""
+    """Two points two and four steps beyond node j."""
     step = max(abs(contour.k[j] - contour.k[j - 1]), 1e-300)
     return contour.k[j] + 2 * step * np.arange(1, 3)

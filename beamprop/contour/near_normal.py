@@ -1,8 +1,8 @@
-"""Whether a response is sharp at kx = 0: a pole or branch point near it pinches every contour through the origin.
+"""Singularities near kx = 0: a pole or branch point there pinches every contour through the origin.
 
-The response is an even function of kx, so that kx^2 goes once around 0 on a half circle: the mean over it is the value at 0 where
-the response is analytic inside (Cauchy), and lacks the share of poles inside it otherwise. Two contours with nodes farther
-apart than the pole is from the origin would miss it alike.
+The response is an even function of kx, and on a half circle kx^2 goes once around 0: the mean over it is the value at 0 if
+the response is analytic inside (Cauchy), and differs by the share of poles inside it otherwise. Two contours with nodes farther
+apart than the pole is from the origin would both miss it.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ import numpy as np
 
 from ..response.transfer_function import TransferFunction
 
-#: Points on the half circle around kx = 0 over which a response is averaged.
+#: Points on the half circle around kx = 0 over which a response is averaged: a singularity outside, at R radii, changes their mean by
+#: R^-32, 2e-10 at two radii.
 AROUND = 16
-#: Singularities nearer to kx = 0 than this, over k0, are below the rounding of kx^2 and w^2.
+#: Singularities nearer to kx = 0 than this, over k0, are below rounding: (kx/k0)^2 = 1e-18.
 NEAREST = 1e-9
 
 
@@ -27,9 +28,9 @@ def around(radii: np.ndarray) -> np.ndarray:
 
 
 def is_calm(h: np.ndarray, allowed: float) -> np.ndarray:
-    """Whether nothing singular lies inside each circle, (Z, R), from the response at `around`, (Z, 1 + R AROUND).
+    """Whether each circle holds no singularity, (Z, R), from the response at `around`, (Z, 1 + R AROUND).
 
-    `allowed` is what the mean may be off the value in the middle, over the largest of both.
+    `allowed` is the difference of the mean from the value in the middle, over the larger of both, that is still rounding.
     """
     at_0, circles = h[:, :1], h[:, 1:].reshape(h.shape[0], -1, AROUND)
     size = np.maximum(np.abs(at_0), np.max(np.abs(circles), axis=2))
@@ -39,7 +40,7 @@ def is_calm(h: np.ndarray, allowed: float) -> np.ndarray:
 
 
 def nearest_singularity(transfer: TransferFunction, z: np.ndarray, radius: float, k0: float, allowed: float) -> float:
-    """The largest of a sequence of radii inside which, and inside all smaller ones, nothing is singular on any plane; inf if all."""
+    """The largest radius of a sequence of ratio 4 that, with all smaller ones, holds no singularity on any plane; inf if all do."""
     count = max(2, math.ceil(math.log(radius / (NEAREST * k0), 4)) + 1)
     radii = radius * 4.0 ** -np.arange(count)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -1,9 +1,8 @@
-"""The largest |p| of a plane where a first look did not expect it: far outside of the requested positions.
+"""Peaks of |p| far outside of the requested positions, where stationary phase did not expect them.
 
-Errors are over the largest |p| of each plane. Beams that propagate are looked for where stationary phase lets them land (`survey.survey`).
-What crosses a slab by evanescent or guided waves, or along the cones of an indefinite medium, lands elsewhere. Where an error is above
-rtol the planes are therefore looked at once more, in a much wider window, with two shallow contours of low accuracy: a peak
-counts if both see it.
+Errors are over the largest |p| of each plane. `survey.survey` looks for beams where stationary phase says that they land. Waves that
+cross a slab as evanescent or guided ones, or along the cones of an indefinite medium, land elsewhere. Where an error is above
+rtol, p is therefore evaluated in a much wider window, on two shallow contours of low accuracy: a peak counts if both show it.
 """
 
 from __future__ import annotations
@@ -12,41 +11,42 @@ import math
 
 import numpy as np
 
-from ..modes.misplaced import MisplacedPoles
-from ..response.sampled_slab import SampledSlab
 from ..sources.angles import AngleInterpolation
 from . import paths, sums
 from .check_points import Checks, interpolated
-from .paths import BentPlan, Extent
 from .residues import add_residues
+from .search import Planned, Search
 from .sums import beam_amplitudes
 
-#: How much wider than what is requested, and than the way along z, the window is: waves land four times as far to the side as they
-#: go along z if they are as steep as 76 degrees.
+#: The window over the requested one, and over the way along z: waves at up to 76 degrees land within four times their way along z. Six
+#: requested windows are a plain choice, for a peak that guided waves carry farther stays unknown: estimates are larger then.
 WIDER, ALONG = 6.0, 4.0
-#: The accuracy of the look, the share by which both contours may differ, and the most plane waves and positions that it takes: a
-#: peak is a scale, for which a tenth is enough.
+#: The accuracy of these contours, the share by which their peaks may differ, for a scale needs no more than a tenth; and the most plane
+#: waves and positions: 2e7 exponentials, a second or so.
 ROUGH, AGREED, MOST_WAVES, MOST_POINTS = 1e-3, 0.1, 10_000, 2_001
 
 
-def with_wider_look(s: SampledSlab, checks: Checks, reach: Extent, plan: BentPlan, poles: MisplacedPoles) -> Checks:
-    """Checks that know of the peaks far outside; the same ones where the window would take too many plane waves."""
-    extent = WIDER * max(reach.extent, reach.source) + ALONG * max(reach.path, 0.0)
-    wide = paths.plan_bent(reach._replace(extent=extent, band=plan.band), ROUGH, sharp=plan.sharp)
+def with_wider_look(search: Search, planned: Planned, checks: Checks) -> Checks:
+    """Checks with the peaks far outside; unchanged where the window would take too many plane waves."""
+    plan, k0 = planned.plan, search.slab.k0
+    across = WIDER * search.extent.across + ALONG * max(search.extent.path, 0.0)
+    extent = search.extent._replace(farthest=across, band=plan.band)
+    wide = paths.plan_bent(extent, ROUGH, sharp=plan.sharp)
     depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
-    window = max(wide.window, 1.2 * extent + 0.8 * math.log(10 / ROUGH) / depth)
+    window = max(wide.window, 1.2 * across + 0.8 * math.log(10 / ROUGH) / depth)
     first = wide._replace(depth=depth, window=window, crossing=plan.crossing, gap=plan.gap)
-    second = first.other()
+    second = first.second_plan()
     if second.nodes > MOST_WAVES:
         return checks
     requested = checks.sources.requested
     chosen = checks.sources.spread(5)
     beams = AngleInterpolation(checks.sources.beam, requested[chosen])
-    x = extent * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(extent * min(plan.band, 3 * reach.k0)) + 1))
+    # a position for each radian of the steepest plane waves, up to 3 k0
+    x = across * np.linspace(-1, 1, min(MOST_POINTS, 2 * math.ceil(across * min(plan.band, 3 * k0)) + 1))
     peaks = []
-    for i, p in enumerate((first, second)):
-        contour = add_residues(s, paths.bent_contour(p), poles, extent, reach.path, bool(i))
-        right, left = beam_amplitudes(checks.k0, beams, contour)
+    for p in (first, second):
+        contour = add_residues(search.slab, paths.bent_contour(p), [planned.poles], extent, p is second)
+        right, left = beam_amplitudes(k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
             summed = sums.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
             peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))

@@ -14,27 +14,27 @@ from .paths import Extent
 from .quadrature import Quadrature
 from .search import MOST_PLANE_WAVES
 
-#: How far the contour of propagating waves dips below the axis, over k0: about `paths.SLOPE`, the depth of bent contours.
+#: The largest depth of the contour of propagating waves, over k0: about `paths.SLOPE`, that of bent contours.
 DEEPEST_DIP = 0.3
 
 
-def _dip(s: SampledSlab, reach: Extent, rtol: float, sharp: float) -> float:
-    """How far a contour of propagating waves dips below the axis, over k0: 0 where nothing is sharp, or backward waves are there."""
+def _dip(s: SampledSlab, extent: Extent, rtol: float, sharp: float) -> float:
+    """Depth of a contour of propagating waves over k0: 0 without a singularity near the axis, and where there are backward modes."""
     growth = min(paths.DEEPEST, max(0.0, math.log(rtol / (100 * paths.EPS))))
-    dip = min(DEEPEST_DIP, growth / (reach.k0 * max(reach.extent, reach.source)))
+    dip = min(DEEPEST_DIP, growth / (extent.k0 * extent.across))
     if not math.isfinite(sharp):
         return 0.0
-    found = misplaced.misplaced(s, 1.05 * dip * reach.k0, (1 - 1e-6) * reach.k0, 1e-6 * reach.k0)
-    return dip if not found.poles else 0.0
+    backward = misplaced.misplaced(s, 1.05 * dip * extent.k0, (1 - 1e-6) * extent.k0, 1e-6 * extent.k0)
+    return dip if not backward.poles else 0.0
 
 
-#: The most plane waves of a rotated beam whose width is asked for: their error is estimated within some
-#: seconds, and some hundred positions are summed then.
+#: The most plane waves of a rotated beam whose width is measured: estimating their error takes seconds, and so does the sum at a hundred
+#: positions (6e7 exponentials).
 MOST_OF_WIDTHS = 600_000
 
 
 def _rays(k0: float, length: float) -> int:
-    """Gauss nodes over the propagating waves by which a field is tried first, `length` being the way along x and z."""
+    """The first number of Gauss nodes over the propagating waves, 24 for 40 rad of phase (`paths.PANEL`) over `length` along x and z."""
     return int(60 + 0.6 * k0 * length)
 
 
@@ -47,22 +47,22 @@ def check_rays(s: SampledSlab, beam: Beam, path: float, extent: float) -> None:
         )
 
 
-#: How often the number of nodes is tried, each 1.8 times the one before: 1.8^5, so up to 19-fold.
+#: The most numbers of nodes that are tried, each 1.8 times the one before: up to 1.8^5 = 19 times the first.
 ROUNDS = 6
 
 
-def propagating_quadrature(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, sharp: float) -> Quadrature:
-    """Gauss nodes over the propagating waves, raised until two numbers of nodes, on contours that dip differently, agree."""
-    count = _rays(reach.k0, reach.extent + reach.path)
-    dip = _dip(s, reach, rtol, sharp) if checks.guided else 0.0
+def propagating_quadrature(s: SampledSlab, checks: Checks, extent: Extent, rtol: float, sharp: float) -> Quadrature:
+    """Gauss nodes over the propagating waves, raised until two numbers of them, on contours of different depth, agree."""
+    count = _rays(extent.k0, extent.across + extent.path)
+    dip = _dip(s, extent, rtol, sharp) if checks.guided else 0.0
     for _ in range(ROUNDS):
         memory.check_contour(1.4 * count, checks.sources.angles.size, checks.z.size)
         coarse, fine = (
             paths.propagating_contour(s.k0, s.real_branches, int(more * count), share * dip, share * sharp)
             for more, share in ((1.0, 0.7), (1.4, 1.0))
         )
-        _, second, found, checks = error.compare(checks, (coarse, fine), rtol)
-        if found.worst <= rtol or count > MOST_PLANE_WAVES // 4:
+        _, second, estimate, checks = error.compare(checks, (coarse, fine), rtol)
+        if estimate.worst <= rtol or count > MOST_PLANE_WAVES // 4:
             break
         count = int(1.8 * count)
-    return Quadrature(fine, found.budget, amplitudes=second.amplitudes)
+    return Quadrature(fine, estimate.budget, amplitudes=second.amplitudes)

@@ -1,4 +1,4 @@
-"""What is chosen: a contour, and the estimated error of the field on it."""
+"""A quadrature: the contour that was chosen, and the estimated error of the field on it."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from .sums import beam_amplitudes
 
 
 class Quadrature(NamedTuple):
-    """A contour that serves, and the estimated relative error by requested beam."""
+    """A contour, and the estimated relative error of the field on it by requested beam."""
 
     contour: Contour
     budget: ErrorBudget
     fft: int = 0  #: FFT length if the contour fits the requested even grid, else 0
     circles: bool = False  #: whether it has circles around backward modes
-    amplitudes: tuple[np.ndarray, np.ndarray] | None = None  #: of the beams that it was chosen for
+    amplitudes: tuple[np.ndarray, np.ndarray] | None = None  #: of the beams for which it was chosen
     checked_planes: np.ndarray | None = None  #: the planes on which the error was estimated
 
     @property

@@ -1,7 +1,7 @@
-"""What is known before a contour is chosen, and the poles that a bent contour has to deal with.
+"""The search for a contour: its fixed data, bent plans, and the poles on the wrong side of their contours.
 
 A `Search` is made once for a field and an rtol and does not change; a `Planned` is a bent plan with the poles on the wrong side of its
-contour, as far as they were searched for. Everything is for one frequency.
+contour, up to the Re kx to which they were searched for. Everything is for one frequency.
 """
 
 from __future__ import annotations
@@ -19,46 +19,43 @@ from .paths import BentPlan, Contour, Extent
 
 #: The most plane waves of a contour: their response takes 3.2 MB a plane.
 MOST_PLANE_WAVES = 200_000
-#: The most beams whose spectra's ends a contour meets on the axis: each end takes panels of its own.
+#: The most beams for whose spectra's ends a contour meets the axis: panels graded towards the axis, some 90 for each end of a spectrum,
+#: are 16 x 90 x 20 = 29 000 nodes then.
 MOST_CUT = 8
-#: From how many plane waves on those nearer to the normal than a beam's own are left out.
+#: From this many plane waves on a band begins at the beam's own plane waves: on contours with fewer, those nearer to the normal cost less
+#: than the response that shows whether they matter.
 MANY_PLANE_WAVES = 20_000
-#: What the ends of spectra and bands are looked for with, over rtol: three digits below it, so that none of them shows.
+#: Tolerance over rtol with which the ends of spectra and bands are determined: none of these shows in an error of rtol.
 BELOW_RTOL = 1e-3
 
 
 class Search(NamedTuple):
-    """What a contour is chosen by."""
+    """The data by which a contour is chosen."""
 
     slab: SampledSlab
     checks: Checks
-    reach: Extent
+    extent: Extent
     rtol: float
     noise: float  #: relative rounding of the response
     sharp: float  #: distance from kx = 0 of the nearest singularity
-    ends: np.ndarray  #: |kx| where spectra are cut off that matter
+    ends: np.ndarray  #: |kx| at which spectra are cut off while they matter still
 
     @property
     def start(self) -> float:
-        """Re kx from which poles are searched for."""
-        return min(1e-3 * self.slab.k0, 0.1 * min(self.sharp, self.reach.branch))
-
-    @property
-    def across(self) -> float:
-        """Length along x over which phases turn."""
-        return max(self.reach.extent, self.reach.source)
+        """Re kx from which poles are searched for: before the nearest singularity, and before waves 0.06 degrees off the normal."""
+        return min(1e-3 * self.slab.k0, 0.1 * min(self.sharp, self.extent.branch))
 
 
 class Planned(NamedTuple):
-    """A bent plan, and the poles on the wrong side of its contour as far as they were searched for."""
+    """A bent plan, and the poles on the wrong side of its contour up to Re kx = `searched`."""
 
     plan: BentPlan
     poles: misplaced.MisplacedPoles
-    searched: float  #: up to this Re kx
+    searched: float
 
     @property
     def unclear(self) -> bool:
-        """Whether there are more modes than can be told apart."""
+        """Whether there are more modes than can be separated."""
         return self.poles is misplaced.UNCLEAR
 
     @property
@@ -67,40 +64,40 @@ class Planned(NamedTuple):
         return bool(self.poles.poles) or math.isfinite(self.poles.crossing)
 
 
-def begin(s: SampledSlab, checks: Checks, reach: Extent, rtol: float, seen: survey.Survey) -> tuple[Search, Planned]:
-    """The search, its band no wider than what arrives, and a first plan of which no pole is known."""
-    search = Search(s, checks, reach, rtol, seen.noise, seen.sharp, np.empty(0))
+def begin(s: SampledSlab, checks: Checks, extent: Extent, rtol: float, seen: survey.Survey) -> tuple[Search, Planned]:
+    """The search, its band no wider than the plane waves that arrive, and a first plan, without poles yet."""
+    search = Search(s, checks, extent, rtol, seen.noise, seen.sharp, np.empty(0))
     if too_many_plane_waves(first_plan(search)):  # the spectrum of a sharp edge, but a slab lets little of it through
-        reach = reach._replace(band=survey.arriving_band(s, checks, reach, BELOW_RTOL * rtol))
-        search = search._replace(reach=reach)
+        extent = extent._replace(band=survey.arriving_band(s, checks, extent, BELOW_RTOL * rtol))
+        search = search._replace(extent=extent)
     if first_plan(search).nodes > MANY_PLANE_WAVES:
         low = checks.sources.low(s.k0, 1e-6 * rtol)
-        if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, reach.band):
-            search = search._replace(reach=reach._replace(low=low))
+        if low > 0 and survey.wide_enough(checks.transfer, checks.z, low, extent.band):
+            search = search._replace(extent=extent._replace(low=low))
     if checks.sources.requested.size <= MOST_CUT:
-        search = search._replace(ends=survey.cut_spectra(s, checks, search.reach, 0.1 * rtol))
+        search = search._replace(ends=survey.cut_spectra(s, checks, search.extent, 0.1 * rtol))
     return search, Planned(first_plan(search), misplaced.NONE, 0.0 if checks.guided else math.inf)
 
 
 def first_plan(search: Search, deepest: float = math.inf) -> BentPlan:
     """A bent plan from the error terms, no deeper than `deepest`."""
-    return paths.plan_bent(search.reach, search.rtol, search.noise, deepest, search.sharp)
+    return paths.plan_bent(search.extent, search.rtol, search.noise, deepest, search.sharp)
 
 
 def too_many_plane_waves(plan: BentPlan) -> bool:
     """Whether a plan, or the second one that it is compared with, takes too many plane waves."""
-    return plan.other().nodes > MOST_PLANE_WAVES
+    return plan.second_plan().nodes > MOST_PLANE_WAVES
 
 
 def with_poles(search: Search, planned: Planned) -> Planned:
-    """Poles on the wrong side of the plan's contour, as far as its band goes; a plan that crosses the axis where it has to.
+    """The plan with the poles on the wrong side of its contour up to the end of its band, crossing the axis where it has to.
 
-    The contour crosses no steeper than it leaves the origin.
+    A crossing contour is at most half as deep as the crossing is wide, about as steep as where it leaves the origin.
     """
     plan = planned.plan
     if plan.band <= planned.searched:
         return planned
-    searched = 1.15 * plan.band  # beyond the end of the second contour, at 1.12 times the band
+    searched = 1.15 * plan.band  # beyond the end of the second contour, 1.12 times the band
     poles = misplaced.misplaced(search.slab, 1.05 * plan.depth, searched, search.start)
     if math.isfinite(poles.crossing):
         gap = poles.gap / 2
@@ -110,34 +107,28 @@ def with_poles(search: Search, planned: Planned) -> Planned:
     return Planned(plan, poles, searched)
 
 
-def shallower(search: Search, planned: Planned, share: float = 1 / 3) -> Planned:
-    """A plan nearer to the axis: there are fewer modes between them."""
-    plan = first_plan(search, planned.plan.depth * share)._replace(band=planned.plan.band)
+def shallower(search: Search, planned: Planned) -> Planned:
+    """A plan at a third of the depth, with fewer modes between its contour and the axis."""
+    plan = first_plan(search, planned.plan.depth / 3)._replace(band=planned.plan.band)
     return Planned(plan, planned.poles, 0.0)
 
 
 def pair_of_contours(search: Search, planned: Planned) -> tuple[Contour, Contour]:
-    """The contour of a plan and a second one to compare it with, circles around the poles that they leave on the wrong side."""
+    """The contours of a plan and of its second plan, with circles around the poles on their wrong side."""
+    plans = planned.plan, planned.plan.second_plan()
     first, second = (
-        residues.add_residues(
-            search.slab,
-            paths.bent_contour(plan),
-            planned.poles,
-            search.across,
-            search.reach.path,
-            plan is not planned.plan,
-        )
-        for plan in (planned.plan, planned.plan.other())
+        residues.add_residues(search.slab, paths.bent_contour(plan), [planned.poles], search.extent, plan is plans[1])
+        for plan in plans
     )
     return first, second
 
 
 def refusal(search: Search) -> str:
-    """Why poles cannot be put right, and what would do."""
+    """The message of a refusal where poles cannot be separated: the least loss with which they can."""
     plan = first_plan(search)
-    # the first, third and fifth of the depths that are tried with loss, if the contour may have so many plane waves there
+    # the first, third and fifth depth of a search with loss, where the contour would not have too many plane waves
     shallow = [first_plan(search, plan.depth * share)._replace(band=plan.band) for share in (1 / 9, 1 / 81)]
-    depths = [1.05 * p.depth for p in (plan, *shallow) if p is plan or p.other().nodes < MOST_PLANE_WAVES / 4]
+    depths = [1.05 * p.depth for p in (plan, *shallow) if p is plan or p.second_plan().nodes < MOST_PLANE_WAVES / 4]
     loss = misplaced.enough_loss(search.slab, depths, 1.15 * plan.band, search.start)
     remedy = (
         ", or take a thinner slab or fewer periods: of losses up to 1, over each density and modulus, none would do"
@@ -151,7 +142,7 @@ def refusal(search: Search) -> str:
 
 
 def too_many(rtol: float) -> str:
-    """Why a question is refused that takes too many plane waves."""
+    """The message of a refusal where a contour would take too many plane waves."""
     return (
         f"rtol: {rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
         "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "

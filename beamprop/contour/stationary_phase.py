@@ -1,7 +1,7 @@
-"""Where a beam lands, by stationary phase: a plane wave of transfer function H is carried along x by -d(arg H)/dkx.
+"""Where a beam lands, by stationary phase: a plane wave of transfer function H is shifted along x by -d(arg H)/dkx.
 
-The derivative is a difference over a small step in kx. Of the strong plane waves of a beam the least and the most shift span its
-footprint on a plane; on a long way, where plane waves part, those that are bright where they land.
+The derivative is a difference over a small step in kx. The least and the most shift of a beam's strong plane waves span its
+footprint on a plane; after a long way, where plane waves part, those of the plane waves that are bright where they land.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ import numpy as np
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
 
-#: Below this |H| a difference over H may overflow: the smallest normal number is 2e-308, steps in kx and differences share the rest.
+#: Below this |H| a difference over step H may overflow or lose digits: the smallest normal number, 2e-308, leaves 58 decades for the
+#: step in kx and for H's rounding.
 FAINT = 1e-250
-#: Plane waves of more than this share of the largest |H| are strong: below, a beam's footprint would be that of its faint tails.
+#: Plane waves of more than this share of the largest |H| are strong. A plain choice: with less faint tails widen the footprint, and the
+#: window that is sampled; with more its edges, where |p| is a tenth of its peak, are cut.
 STRONG = 0.1
 
 
@@ -42,7 +44,7 @@ def span(low: np.ndarray, high: np.ndarray, step: Any) -> tuple[np.ndarray, np.n
 
 
 def _extremes(shift: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The least and the most of the shifts `where` it holds, along the last axis; 0 where there is none, or none finite."""
+    """The least and the most shift along the last axis among those with `where`; 0 if there is none, or no finite one."""
     least, most = shift.min(-1, where=where, initial=np.inf), shift.max(-1, where=where, initial=-np.inf)
     return np.where(np.isfinite(least), least, 0.0), np.where(np.isfinite(most), most, 0.0)
 
@@ -50,10 +52,11 @@ def _extremes(shift: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndar
 #: H(kx) on one plane for each frequency: (F, n) -> (F, n).
 TransferToPlane = Callable[[np.ndarray], np.ndarray]
 
-#: From a way along z of so many 1/k0 on the window is found by `_far_span`, and waves land at most so far to the side before:
-#: a ray as steep as 0.98 k0 is carried five times its way along z, but for delays by resonances.
+#: From a way along z of FAR/k0 on, 1600 wavelengths, the window is that of `_far_span`; before it waves land at most as far to the side:
+#: a ray of kx = 0.98 k0 is shifted five times its way along z, and more only by delays in resonances.
 FAR = 1e4
-#: Plane waves across a beam's band: so many for each side of the normal.
+#: Plane waves across a beam's band for each side of the normal: their shifts are a smooth function, whose extremes 20 samples hit to a
+#: few per cent of the span; a window is wider than it by 1.5 source's widths and a wavelength.
 ACROSS = 20
 
 
@@ -79,16 +82,16 @@ def landing(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray
     return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
 
 
-#: Plane waves by which a far field is sampled, and what share of the largest |p| the window of a far field holds: half the peak,
-#: at which widths are measured, lies inside.
+#: Plane waves that sample a far field; and the share of the largest |p| down to which its window reaches: widths are measured at half the
+#: peak, which lies well inside.
 RAYS, BRIGHT = 401, 0.25
 
 
 def _far_span(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The least and the most shift (F,) of the rays that are bright where they land.
 
-    Rays part on a long way: |p| of a far field is |S H| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands. Few are as
-    bright as the strongest, so that the window is narrower than all the plane waves of the beam would span it.
+    Rays part on a long way: |p| of a far field is |S H| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands. Only part of the
+    rays is nearly as bright as the brightest, so that this window is narrower than that of all plane waves of the beam.
     """
     lo, hi = (np.clip(v, -0.999 * s.k0, 0.999 * s.k0) for v in beam.band(s.k0, 1e-2))
     k0, k = s.k0[:, None], np.linspace(lo, hi, RAYS, axis=-1)

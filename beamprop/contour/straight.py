@@ -11,18 +11,19 @@ from . import error, paths, sums
 from .quadrature import Quadrature
 from .search import Planned, Search, pair_of_contours, with_poles
 
-#: FFTs are for even grids of at least this many points.
+#: Grids of fewer points are never worth an FFT; above, `fft_is_cheaper` decides.
 FEWEST = 8
-#: What share of its window a straight contour is tried with first, and how much more of everything it is given then: a plan's
-#: error terms are bounds, which most fields keep with less.
+#: Shares of the planned window, and factors on the exponents of the error terms, that are tried in turn. These terms are bounds, so
+#: that most fields keep rtol with 0.78 of the window, and FFTs that much shorter; a second and a third try cost a response
+#: each. With 1.4 times the exponents rtol^1.4 is planned for.
 TRIES = ((0.78, 1.0), (0.9, 1.0), (1.0, 1.4))
-#: Time of two FFTs over n log2 n, over the time of a multiplication in a matrix product; measured: `experiments/benchmarks/steps.py` has
-#: the row of FFTs against matrix products.
+#: Time of two FFTs over n log2 n, over that of a multiplication in a matrix product. `experiments/benchmarks/steps.py` measures the
+#: row "straight contours and FFTs where they are cheaper" again.
 FFT_STEP = 5.5
 
 
 def spacing_for_fft(x: np.ndarray, band: float, rtol: float) -> float:
-    """Spacing of a grid that is even as far as an FFT needs it (see `sums.grid_sum`), 0 for any other."""
+    """Spacing of a grid that is even enough for an FFT, 0 for any other: `sums.grid_sum` errs by (band offset)^2/2, 0.005 rtol."""
     grid = sums.grid_of(x)
     moved = band * grid.unevenness
     return grid.step if x.size >= FEWEST and moved * moved < 0.01 * rtol else 0.0
@@ -36,9 +37,9 @@ def fft_is_cheaper(n: int, plane_waves: float, points: int) -> bool:
 def quadrature_on_straight_contours(
     search: Search, planned: Planned, x: np.ndarray
 ) -> tuple[Quadrature | None, Planned]:
-    """Straight contours that keep rtol, None where they do not or are not cheaper; and the plan, with its poles.
+    """A straight contour that keeps rtol, None where none does or none is cheaper; and the plan, with its poles.
 
-    They are compared with the second bent contour of the plan, once for each plan.
+    It is compared with the plan's second bent contour, whose field is summed once for all tries.
     """
     plan, rtol = planned.plan, search.rtol
     dx = spacing_for_fft(x, plan.band, rtol)
@@ -46,7 +47,7 @@ def quadrature_on_straight_contours(
         return None, planned
     plane_waves, second = plan.band * plan.window / (2 * np.pi), None
     for share, tighten in TRIES:
-        straight = paths.plan_straight(search.reach, rtol, tighten, search.noise)
+        straight = paths.plan_straight(search.extent, rtol, tighten, search.noise)
         n = fast_length(max(math.ceil(share * straight.window / dx), x.size))
         if not fft_is_cheaper(n, plane_waves, x.size):
             break

@@ -1,15 +1,15 @@
 """Contours that pass below some stretches of the kx axis and above others.
 
-A contour below the right half of the axis serves where all waves are forward ones. Two kinds of slabs need another:
+A contour below the right half of the axis serves where all waves are forward ones. Two kinds of slabs need a different contour:
 
 * A half-space behind that carries backward waves has its branch point on or below the axis, with a cut that leads downward.
   The contour comes up to the axis there, passes over the branch point and may go down again.
-* A slab of very many periods without loss guides more modes than can be found one by one. They fill the bands |trace/2| < 1 of
-  its cell's matrix, and a trace of loss moves all modes of a stretch of kx to one side: by i e -(dT/de)/(dT/dkx) for half the
-  trace T and density + i e |density|, 1/modulus likewise. The contour passes above the stretches where they move down.
+* A slab of very many periods without loss guides more modes than can be located singly. They fill the bands |T| < 1, T being half
+  the trace of its cell's matrix. A relative loss e (density + i e |density|, 1/modulus likewise) moves a mode by
+  -i e (dT/de)/(dT/dkx), to the same side throughout a stretch of kx. The contour passes above the stretches where modes move down.
 
-Where the side changes the contour meets the axis, in a branch point or where modes crowd. The integrand is bounded there: what
-is left out between the axis and the nearest panel goes as the 3/2 power of its length.
+Between stretches the contour meets the axis, in a branch point or where modes crowd. The integrand is bounded there: the
+piece that is left out between the axis and the nearest panel contributes as the 3/2 power of its length.
 """
 
 from __future__ import annotations
@@ -27,10 +27,11 @@ from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab, on_the_right
 from . import residues
 from .paths import SLOPE, Contour, Extent
+from .search import Search
 
 
 class Stretch(NamedTuple):
-    """Of the axis from lo to hi, -1 where the contour passes below it and +1 where it passes above."""
+    """The axis from lo to hi; side is -1 if the contour passes below it and +1 if it passes above."""
 
     lo: float
     hi: float
@@ -41,50 +42,58 @@ class Plan(NamedTuple):
     """The numbers of a contour in stretches."""
 
     depth: float  #: below the axis
-    height: float  #: above it, where waves grow along z
-    slope: float  #: with which it leaves the axis
+    height: float  #: above the axis, where waves grow along z
+    slope: float  #: d Im kx / d Re kx where it leaves the axis
     band: float  #: Re kx of its end
-    finer: float = 1.0  #: panels are this much shorter than they are first planned
+    finer: float = 1.0  #: factor by which there are more panels than in the first plan
     nodes: int = 20  #: Gauss nodes of a panel
+    closed: bool = False  #: whether the contour ends where the last spectrum does: see `Contour`
 
-    def other(self) -> Plan:
-        """A plan that shares no number with this one, to estimate its error by."""
-        return Plan(
-            self.depth * 0.83, self.height * 0.8, self.slope * 0.8, self.band * 1.12, self.finer * 1.15, self.nodes + 3
+    def second_plan(self) -> Plan:
+        """A plan to estimate this one's error by: lower, wider, of shorter panels with more nodes."""
+        return self._replace(
+            depth=self.depth * 0.83,
+            height=self.height * 0.8,
+            slope=self.slope * 0.8,
+            band=self.band * 1.12,
+            finer=self.finer * 1.15,
+            nodes=self.nodes + 3,
         )
 
 
-def plan_stretches(reach: Extent, outside: float, rtol: float, noise: float) -> Plan:
+def plan_stretches(extent: Extent, outside: float, rtol: float, noise: float) -> Plan:
     """A first plan. `outside` is the distance along z in the half-spaces; `noise` the relative rounding of S h.
 
-    exp(depth X) magnifies rounding and what lies on the other side, as does exp(height Z) above the axis, where waves in the
-    half-spaces grow.
+    exp(depth X) magnifies rounding, as does exp(height outside) above the axis, where waves in the half-spaces grow. The exponents are
+    at most 6 and 2, so that the factors together stay below e^8 (`paths.DEEPEST`); the slope of 0.6 is that of a bent contour.
     """
     growth = min(max(1.5, math.log(rtol / (30 * noise))), 6.0)
-    depth = min(SLOPE * reach.k0, growth / max(reach.extent, reach.source))
-    return Plan(depth, min(depth, growth / 3 / max(outside, 1e-3 / reach.k0)), 0.6, reach.band)
+    depth = min(SLOPE * extent.k0, growth / extent.across)
+    return Plan(depth, min(depth, growth / 3 / max(outside, 1e-3 / extent.k0)), 0.6, extent.band)
 
 
 # --- which side -------------------------------------------------------------------------------------------
 
-#: Samples along the axis by which bands are found, evenly spaced and by decade; and the step for derivatives, over k0 or 1.
+#: Samples along the axis that locate bands: evenly spaced, and 1000 a decade from k0/1000 to k0. A band narrower than a 60 000th of the
+#: contour's band is missed, which the difference of two contours shows; twice as many take twice 30 ms.
 SAMPLES, DECADES = 60_000, 3000
+#: Relative imaginary step of derivatives: they are right to STEP^2 = 1e-14, for nothing is subtracted.
 STEP = 1e-7
-#: Derivatives of half the trace below this are rounding.
+#: Derivatives of half the trace below this, some 5000 EPS, are rounding of the sum over a cell's layers.
 UNSEEN = 1e-12
 
 
 class Bands(NamedTuple):
-    """A periodic slab's axis from 0 to the band's end, by the side to which a trace of loss moves the modes there."""
+    """The axis from 0 to the band's end for a periodic slab: the side to which a little loss moves its modes."""
 
     parts: list[Stretch]
-    gaps: list[tuple[float, float]]  #: where the cell has no modes, but a face of the slab may
+    gaps: list[tuple[float, float]]  #: without modes of the cell; a face of the slab may have some
 
 
 def bands_of(s: SampledSlab, end: float) -> Bands:
-    """The bands of a periodic slab: derivatives are imaginary parts of half the trace at complex kx and densities.
+    """The bands of a periodic slab, by derivatives of half the trace: its imaginary parts at complex kx and densities.
 
-    The side changes half-way through a gap.
+    The side changes in the middle of a gap.
     """
     k = np.linspace(0, end, SAMPLES + 1)[1:]
     k = np.unique(np.concatenate([k, np.geomspace(1e-3, 1, DECADES) * min(s.k0, end)]))
@@ -95,7 +104,7 @@ def bands_of(s: SampledSlab, end: float) -> Bands:
     at = np.flatnonzero(clear)
     if not at.size:
         return Bands([Stretch(0.0, end, -1)], [(float(k[0]), end)])
-    borders = np.flatnonzero(np.diff(inside))  # gaps end between two samples; those of less than two samples are none
+    borders = np.flatnonzero(np.diff(inside))  # a gap is at least two samples wide
     runs = np.split(np.arange(k.size), borders + 1)
     gaps = [(float(k[run[0]]), float(k[run[-1]])) for run in runs if not inside[run[0]] and run.size > 1]
     side = (np.sign(by_k) * np.sign(by_loss)).astype(int)[at]
@@ -108,9 +117,9 @@ def bands_of(s: SampledSlab, end: float) -> Bands:
 def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[MisplacedPoles]:
     """Modes of the slab's faces in the gaps, no farther than `away` from the axis, on the wrong side of the contour.
 
-    Those that belong below a contour that passes below, and those that belong above one that passes above.
+    First those that belong below a contour below the axis, then those that belong above a contour above it.
     """
-    found: dict[int, list[Mode]] = {-1: [], 1: []}
+    modes: dict[int, list[Mode]] = {-1: [], 1: []}
     at = sorted(float(abs(b.real)) for b in s.branch_points)
     cuts = [b * (1 + side * BESIDE) for b in at for side in (-1, 1)]
     for lo, hi in bands.gaps:
@@ -119,15 +128,16 @@ def misplaced_in_gaps(s: SampledSlab, bands: Bands, away: float) -> list[Misplac
             if right - left > 3 * BESIDE * right:
                 side = next(part.side for part in bands.parts if part.lo <= (left + right) / 2 <= part.hi)
                 here = misplaced.modes_in(s, Box(left, right, -away, away), _without_growth)
-                found[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
-    above, below = (misplaced.with_discs(s, found[side], of=_without_growth) for side in (1, -1))
+                modes[side] += [mode._replace(direction=-side * mode.direction) for mode in here]
+    above, below = (misplaced.with_discs(s, modes[side], of=_without_growth) for side in (1, -1))
     return [below, above._replace(crossing=0.0)]
 
 
 def _without_growth(s: SampledSlab, loss: float) -> Dispersion:
-    """D of a periodic slab, made more lossy, over the growth of Bloch waves across it: an analytic function without zeros in a gap.
+    """D of a periodic slab with loss added, divided by the growth of Bloch waves across it, which is analytic without zeros in a gap.
 
-    Of very many periods D turns as often as they do along any outline off the axis; what is left turns as the faces have it.
+    D of very many periods winds around 0 with that growth on any outline off the axis. The quotient winds with the modes of the
+    faces alone.
     """
     lossy, f = s.with_loss(loss), dispersion_of(s, loss)
 
@@ -139,16 +149,12 @@ def _without_growth(s: SampledSlab, loss: float) -> Dispersion:
 
 
 def met_at_branches(s: SampledSlab, parts: list[Stretch]) -> list[Stretch]:
-    """Stretches cut at the branch points that lie on the other side of the axis than where they belong, or on it."""
+    """Stretches cut at the branch points that lie on the wrong side of the axis, or on it."""
     for b in s.branch_points:
-        point, side = complex(on_the_right(b)), 1 if b.real < 0 else -1  # the side on which it may be passed
+        point, side = complex(on_the_right(b)), 1 if b.real < 0 else -1  # the side on which the contour may pass it
         if point.real > abs(point.imag):
             parts = [piece for part in parts for piece in _cut(part, point.real, side)]
     return parts
-
-
-#: Of spectra that are not cut off.
-NO_ENDS = np.empty(0)
 
 
 def _cut(part: Stretch, at: float, side: int = 0) -> list[Stretch]:
@@ -157,9 +163,9 @@ def _cut(part: Stretch, at: float, side: int = 0) -> list[Stretch]:
 
 
 def met_at_ends(parts: list[Stretch], ends: np.ndarray) -> list[Stretch]:
-    """Stretches cut where spectra end: up to there they are analytic, and on the axis it is said where they end.
+    """Stretches cut where spectra end. A spectrum is analytic up to its end, which is defined on the axis.
 
-    A contour that stayed off the axis would lack the way from it up to the axis, which is as large as the integrand.
+    A contour that ended off the axis would lack the piece from there up to the axis, which is as large as the integrand.
     """
     for end in ends:
         parts = [piece for part in parts for piece in _cut(part, float(end))]
@@ -168,9 +174,11 @@ def met_at_ends(parts: list[Stretch], ends: np.ndarray) -> list[Stretch]:
 
 # --- the contour ------------------------------------------------------------------------------------------
 
-#: Panels towards an end on the axis shorten by this ratio, down to a length over k0 at which what is left out vanishes.
+#: Panels towards an end on the axis shorten by this ratio: the end is 3.9 half-lengths from their middles, and n Gauss nodes err by
+#: 7.6^-2n. The piece that is left out, SHORTEST over k0, contributes 1e-15.
 RATIO, SHORTEST = 1.7, 1e-10
-#: Length of a panel over its distance from the axis, and phase over a panel [rad].
+#: Length of a panel over its distance from the axis: poles there are 1.7 half-lengths off, and n Gauss nodes err by 3.6^-2n. And phase
+#: over a panel [rad], which 20 nodes integrate to rounding (J_40(4.5)). Both leave room for poles between the contour and the axis.
 FLAT, TURN = 1.2, 9.0
 
 
@@ -181,10 +189,10 @@ def stretched_contour(s: SampledSlab, parts: list[Stretch], plan: Plan, across: 
     ----------
     s : SampledSlab
     parts : list of Stretch
-        From 0, each beginning where the one before it ends; the last goes on to the band's end, off the axis.
+        From 0, without gaps; the last goes on to the band's end, off the axis.
     plan : Plan
     across, along : float, m
-        Distance along x, and along z in the half-spaces, over which phases turn.
+        Distances along x, and along z in the half-spaces, of the farthest points.
     """
     edges = np.concatenate(
         [_edges(s, _corners(part, plan), (across, along), plan.finer) for part in parts if part.lo < plan.band]
@@ -197,10 +205,10 @@ def stretched_contour(s: SampledSlab, parts: list[Stretch], plan: Plan, across: 
 
 
 def _corners(part: Stretch, plan: Plan) -> list[complex]:
-    """Where a stretch's contour turns: from the axis out, along it, and back, or on to the band's end if the stretch goes so far."""
+    """Corners of a stretch's contour: away from the axis, along it, and back or on to the band's end."""
     last, hi = part.hi >= plan.band, min(part.hi, plan.band)
     room = hi - part.lo if last else (hi - part.lo) / 2
-    away = min(plan.height if part.side > 0 else plan.depth, 0.95 * room * plan.slope)
+    away = min(plan.height if part.side > 0 else plan.depth, 0.95 * room * plan.slope)  # a piece along the axis is left
     turn, lift = away / plan.slope, 1j * part.side * away
     corners = [part.lo + 0j, part.lo + turn + lift]
     return [*corners, hi + lift] if last else [*corners, hi - turn + lift, hi + 0j]
@@ -209,7 +217,7 @@ def _corners(part: Stretch, plan: Plan) -> list[complex]:
 def _edges(s: SampledSlab, corners: list[complex], lengths: tuple[float, float], finer: float) -> np.ndarray:
     """Ends of the panels along the straight pieces of a stretch, (panels, 2)."""
     across, along = lengths
-    out = [_graded(corners[0], corners[1], s.k0), _even(corners[1], corners[2], FLAT)]
+    out = [_graded(corners[0], corners[1], s.k0), _even(corners[1], corners[2])]
     if len(corners) == 4:
         out.append(_graded(corners[3], corners[2], s.k0)[::-1, ::-1])
     edges = np.concatenate(out)
@@ -221,71 +229,44 @@ def _edges(s: SampledSlab, corners: list[complex], lengths: tuple[float, float],
 
 
 def _graded(end: complex, corner: complex, k0: float) -> np.ndarray:
-    """Panels from an end on the axis outward, each longer than the one before."""
+    """Panels from an end on the axis outward, each RATIO times as long as the one before."""
     count = max(2, math.ceil(math.log(abs(corner - end) / (SHORTEST * k0), RATIO)))
     share = np.concatenate([[0.0], RATIO ** -np.arange(count, -1.0, -1.0)])
     at = end + share * (corner - end)
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def _even(start: complex, stop: complex, flat: float) -> np.ndarray:
-    """Equal panels, no longer than a share of their distance from the axis."""
-    count = max(1, math.ceil(abs(stop - start) / (flat * abs(start.imag))))
+def _even(start: complex, stop: complex) -> np.ndarray:
+    """Equal panels along the axis, no longer than FLAT times their distance from it."""
+    count = max(1, math.ceil(abs(stop - start) / (FLAT * abs(start.imag))))
     at = np.linspace(start, stop, count + 1)
     return np.stack([at[:-1], at[1:]], axis=1)
 
 
-def pair_of_contours(
-    s: SampledSlab,
-    reach: Extent,
-    plan: Plan,
-    start: float,
-    crowded: bool,
-    ends: np.ndarray = NO_ENDS,
-    closed: bool = False,
-) -> tuple[Contour, Contour] | None:
-    """A contour in stretches and another to estimate its error by, circles around what they leave on the wrong side.
+def pair_of_contours(search: Search, plan: Plan, crowded: bool) -> tuple[Contour, Contour] | None:
+    """A contour in stretches and a second one to estimate its error by, with circles around the poles on their wrong side.
 
-    Parameters
-    ----------
-    s : SampledSlab
-    reach : Reach
-    plan : Plan
-    start : float
-        Re kx from which poles are searched for.
-    crowded : bool
-        Whether the slab is periodic and guides more modes than can be found: its bands say where the contour passes.
-    ends : array, rad/m
-        |kx| where spectra are cut off; `closed` says whether all are, at the last of these or before.
-
-    Returns
-    -------
-    pair of Line
-        None where poles cannot be told apart.
+    `crowded` says whether the slab is periodic and guides more modes than can be located, so that its bands decide where the contour
+    passes. None where poles cannot be separated.
     """
-    end = plan.other().band
+    s, extent, end = search.slab, search.extent, plan.second_plan().band
     try:
         if crowded:
             bands = bands_of(s, end)
-            parts, found = bands.parts, misplaced_in_gaps(s, bands, max(plan.depth, plan.height))
+            parts, wrong = bands.parts, misplaced_in_gaps(s, bands, max(plan.depth, plan.height))
         else:
-            found = [misplaced.misplaced(s, 1.05 * plan.depth, end, start)]
-            crossing = found[0].crossing
+            wrong = [misplaced.misplaced(s, 1.05 * plan.depth, end, search.start)]
+            crossing = wrong[0].crossing
             parts = [Stretch(0.0, crossing, -1), *([Stretch(crossing, math.inf, 1)] if crossing < end else [])]
     except TooManyModes:
         return None
-    if misplaced.UNCLEAR in found:
+    if misplaced.UNCLEAR in wrong:
         return None
-    parts = met_at_ends(met_at_branches(s, parts), ends)
-    if closed:
-        parts = [part for part in parts if part.hi <= ends[-1]]
-    across = max(reach.extent, reach.source)
+    parts = met_at_ends(met_at_branches(s, parts), search.ends)
+    if plan.closed:
+        parts = [part for part in parts if part.hi <= search.ends[-1]]
     contours = []
-    for second, p in ((False, plan), (True, plan.other())):
-        contour = stretched_contour(s, parts, p, across, reach.path - s.thickness)
-        both = [residues.add_residues(s, contour, poles, across, reach.path, second) for poles in found]
-        around = sum(circled.circles for circled in both)
-        k = np.concatenate([*(circled.k[: circled.circles] for circled in both), contour.k])
-        weight = np.concatenate([*(circled.weight[: circled.circles] for circled in both), contour.weight])
-        contours.append(Contour(k, weight, circles=around, closed=closed))
+    for second, p in ((False, plan), (True, plan.second_plan())):
+        contour = stretched_contour(s, parts, p, extent.across, extent.path - s.thickness)._replace(closed=plan.closed)
+        contours.append(residues.add_residues(s, contour, wrong, extent, second))
     return contours[0], contours[1]

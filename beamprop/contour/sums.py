@@ -28,21 +28,20 @@ def beam_amplitudes(k0: float, sources: AngleInterpolation, contour: Contour) ->
     return amplitudes(contour, lambda k: sources.spectra(k, k0), sources.beam.centre)
 
 
-#: The most exponentials that are held at a time: 64 MB.
+#: The most exponentials that are held at a time: 64 MB for each direction.
 MOST_PHASES = 4_000_000
 
 
 def direct_sum(contour: Contour, h: np.ndarray, right: np.ndarray, left: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """p at any x (relative to the centre): one matrix product, (Z, n) by (n, X).
+    """`response.reference.field` at any x (relative to the centre): one matrix product, (Z, n) by (n, X).
 
     With amplitudes (B, n) of B beams the answer is (B, Z, X), for no more exponentials than one beam takes.
     """
-    # plain: h @ (right[:, None] * exp(i k x) + left[:, None] * exp(-i k x))
     if x.size > POINTS_AT_A_TIME:
         whole = np.empty((*right.shape[:-1], h.shape[0], x.size), complex)
         for start in range(0, x.size, POINTS_AT_A_TIME):
-            few = slice(start, start + POINTS_AT_A_TIME)
-            whole[..., few] = direct_sum(contour, h, right, left, x[few])
+            columns = slice(start, start + POINTS_AT_A_TIME)
+            whole[..., columns] = direct_sum(contour, h, right, left, x[columns])
         return whole
     block = max(1, MOST_PHASES // max(1, x.size))
     if contour.k.size > block:
@@ -65,10 +64,10 @@ def direct_sum(contour: Contour, h: np.ndarray, right: np.ndarray, left: np.ndar
 
 
 class Grid(NamedTuple):
-    """Positions as an even grid and what they are off it, x = start + step j + offsets; step 0 where they are no such grid.
+    """Positions x = start + step j + offsets, an even grid and what they are off it; step 0 where they are not nearly even.
 
-    `offsets` is None where the positions are even to their own rounding: a grid that a user has typed, read from a file
-    or moved is even to some printed digits only.
+    `offsets` is None where the positions are even to their own rounding. A grid that was typed or read from a file is even to
+    its printed digits only.
     """
 
     start: float
@@ -87,8 +86,8 @@ class Grid(NamedTuple):
         return 0.0 if self.offsets is None else float(np.max(np.abs(self.offsets)))
 
 
-#: From what share of the step on an offset makes a grid uneven: the slope then moves a plane wave of the shortest wavelength that the
-#: grid holds to (pi/100)^2/2 = 5e-4, and finer offsets are told by `straight.spacing_for_fft`.
+#: A grid is uneven from this share of the step on. A plane wave moved by its slope errs by (k offset)^2/2, at the shortest wavelength
+#: that the grid resolves by (pi/100)^2/2 = 5e-4; `straight.spacing_for_fft` compares smaller offsets with rtol.
 UNEVEN = 1e-2
 
 
@@ -104,14 +103,13 @@ def grid_of(x: np.ndarray) -> Grid:
     return grid if largest <= 4 * EPS * float(max(abs(x[0]), abs(x[-1]))) else grid._replace(offsets=offsets)
 
 
-#: On even grids of at least this many points exponentials are products of two small tables, this many apart: a
-#: grid of n points takes n/32 + 32 exponentials and n products.
+#: On even grids of at least TABLE points exponentials are products of two tables, one of every STEP-th point: n/32 + 32 exponentials and n
+#: products, half as many exponentials at 64 points, and a 16th at 1024, where STEP = sqrt(n) is best.
 TABLE, STEP = 64, 32
 
 
 def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.ndarray | None]:
-    """e^{ikx} and, if `both`, e^{-ikx}: (n, X) each. Neither overflows, for |Im k| |x| was chosen small."""
-    # plain: forth = exp(i k x), back = exp(-i k x)
+    """`response.reference.plane_waves`, e^{ikx} and, if `both`, e^{-ikx}: (n, X) each. The choice of |Im k| keeps both finite."""
     ik = 1j * k[:, None]
     grid = grid_of(x) if x.size >= TABLE else None
     if grid is None or not grid.step or (grid.unevenness * float(np.max(np.abs(k)))) ** 2 > EPS:
@@ -121,7 +119,7 @@ def _phases(k: np.ndarray, x: np.ndarray, both: bool) -> tuple[np.ndarray, np.nd
     coarse, fine = np.exp(ik * starts), np.exp(ik * (grid.step * np.arange(STEP)))
     forth = _outer(coarse, fine, x.size)
     back = _outer(1 / coarse, 1 / fine, x.size) if both else None
-    if grid.offsets is not None:  # exp(+-i k offset) to first order
+    if grid.offsets is not None:  # exp(+-i k offset) to first order, the rest being rounding
         turn = ik * grid.offsets
         if back is not None:
             back -= back * turn
@@ -135,11 +133,10 @@ def _outer(coarse: np.ndarray, fine: np.ndarray, count: int) -> np.ndarray:
 
 
 def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> None:
-    """h (rows, count) times each amplitude (2, rows or 1, count), into bins first, first + 1, ... modulo n of out (2, rows, n).
+    """`response.reference.folded` of h (rows, count) times each amplitude (2, rows or 1, count), into out (2, rows, n).
 
-    Exact aliasing, for the output has n points a window. Bins beside them are left as they are.
+    Exact, for a window has n points of x. The remaining bins are left as they are.
     """
-    # plain: out = 0; out[..., bins % n] += h * amplitude
     n, count, start = out.shape[2], h.shape[1], 0
     while start < count:
         here = (first + start) % n
@@ -152,6 +149,10 @@ def _fold(h: np.ndarray, amplitude: np.ndarray, first: int, out: np.ndarray) -> 
         start = part.stop
 
 
+#: Numbers in a block of FFTs: two sources and two results of 16 bytes each, 1 MB, stay in a core's second-level cache.
+IN_CACHE = 2**14
+
+
 def fft_sum(
     contour: Contour,
     h: np.ndarray,
@@ -161,25 +162,24 @@ def fft_sum(
     n: int,
     out: np.ndarray | None = None,
 ) -> np.ndarray:
-    """p at even x = x_0 + j dx (relative to the centre), where contour.step = 2 pi/(n dx): two FFTs a plane.
+    """`response.reference.field` at even x = x_0 + j dx (relative to the centre), contour.step = 2 pi/(n dx): two FFTs a plane.
 
-    Planes go through in blocks that stay in the cache. With amplitudes (B, n) of B beams the answer is (B, Z, X);
-    `out`, of its shape and contiguous, is filled if given.
+    With k = m ds - i sigma it is e^{sigma x} times an inverse FFT of h right plus e^{-sigma x} times an FFT of h left. With
+    amplitudes (B, n) of B beams the answer is (B, Z, X); `out`, of its shape and contiguous, is filled if given.
     """
     shape = (*right.shape[:-1], h.shape[0], x.size)
     turn = np.exp(1j * (contour.first + np.arange(contour.k.size)) * contour.step * x[0])
     amplitude = np.stack([np.atleast_2d(right) * turn, np.atleast_2d(left) / turn])  # (2, B, n)
     grow = np.exp(contour.sigma * x)
-    scale = np.repeat([grow, 1 / grow], 2, axis=1)  # for complex numbers seen as pairs of real ones
+    scale = np.repeat([grow, 1 / grow], 2, axis=1)  # real factors times complex numbers as pairs: half the products
     leftward = bool(np.any(left))
     planes, total = h.shape[0], amplitude.shape[1] * h.shape[0]
     flat = np.empty((total, x.size), complex) if out is None else out.reshape(-1, x.size)
     real = flat.view(float)
-    rows = max(1, min(total, 2**14 // n))
+    rows = max(1, min(total, IN_CACHE // n))
     plan = plan_for(rows, n)
     plan.source[...] = 0
     result = plan.result[..., : x.size].view(float)
-    # plain: flat = grow ifft(right h) + fft(left h)/grow
     for start in range(0, total, rows):
         stop = min(start + rows, total)
         if amplitude.shape[1] == 1:
@@ -197,7 +197,7 @@ def fft_sum(
     return flat.reshape(shape)
 
 
-#: Numbers in a block of slopes, by which fields are moved from an even grid to the requested positions: 16 MB.
+#: Numbers in a block of slopes, by which fields are moved from an even grid to the requested positions: 16 MB beside the answer.
 SLOPES = 2**20
 
 
@@ -210,10 +210,7 @@ def grid_sum(
     n: int,
     out: np.ndarray | None = None,
 ) -> np.ndarray:
-    """`fft_sum` at the requested positions: p + offset dp/dx where they lie off the even grid.
-
-    What is left out is (k offset)^2/2 of a plane wave.
-    """
+    """`fft_sum` at the requested positions: p + offset dp/dx where they lie off the even grid, to (k offset)^2/2 of a plane wave."""
     p = fft_sum(contour, h, right, left, grid.even, n, out)
     if grid.offsets is None:
         return p

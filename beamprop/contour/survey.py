@@ -1,4 +1,4 @@
-"""A first look at the response: its rounding, where beams land, whether it is sharp at kx = 0, how much of a band arrives."""
+"""A survey of the response: its rounding, where beams land, singularities near kx = 0, how much of a band arrives."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .sums import beam_amplitudes
 
 
 class Survey(NamedTuple):
-    """What a first look at the response tells."""
+    """Properties of the response by which contours are planned."""
 
     noise: float  #: relative rounding of the response at the first and last plane
     peaks_outside: np.ndarray  #: see `Checks`
@@ -32,29 +32,29 @@ def survey(
     transfer: TransferFunction,
     x: np.ndarray,
     z: np.ndarray,
-    reach: Extent,
+    extent: Extent,
     rtol: float,
 ) -> Survey:
-    """Rounding, seen in the change of the response when k changes in the last bits; where beams land, by stationary phase; and
-    whether the response is sharp at kx = 0.
+    """Rounding of the response when kx changes in its last bits, where beams land, and the nearest singularity to kx = 0.
 
-    All at the first and the last plane: if the beam lands among the positions there, it does so between.
+    On the first and the last plane: a beam that lands among the positions there does so between too.
     """
-    k = np.linspace(0.03, min(reach.band, 3 * s.k0), 24) * (1 - 0.05j)
+    # 24 places below the axis, out to evanescent waves of 3 k0: rounding is much the same everywhere
+    k = np.linspace(0.03, min(extent.band, 3 * s.k0), 24) * (1 - 0.05j)
     requested = sources.requested
     chosen = sources.spread(3)
     rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[chosen]])
     step = 1e-6 * s.k0
     beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
     ends = z[[0, -1]] if z.size > 1 else z
-    # Gauss panels over propagating waves are wider than the step of a trapezoid rule
-    wide = min(0.2 * reach.branch, math.sqrt(2 * s.k0 / max(reach.path, 1e-9)))
-    first_node = math.pi / paths.plan_bent(reach, rtol).window if sources.beam.entire else wide
+    # a fifth of kb, or where the phase kx^2 Z/2k0 is 1: Gauss panels over propagating waves resolve no more at first
+    wide = min(0.2 * extent.branch, math.sqrt(2 * s.k0 / max(extent.path, 1e-9)))
+    first_node = math.pi / paths.plan_bent(extent, rtol).window if sources.beam.entire else wide
     near = near_normal.around(np.array([first_node]))
-    with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is not calm
+    with np.errstate(over="ignore", invalid="ignore"):  # is_calm takes what is not finite for singular
         h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
     noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
-    allowed = max(0.01 * rtol, 30 * max(noise, EPS))
+    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # well below rtol, but clear of rounding
     sharp = math.inf
     if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
         sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
@@ -71,7 +71,7 @@ def survey(
 
 
 def wide_enough(transfer: TransferFunction, z: np.ndarray, low: float, band: float) -> bool:
-    """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane, not only what else there is."""
+    """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane with |H| > 0.01 for any."""
     k = np.linspace(low, band, 24) + 0j
     h = np.abs(transfer(k, z[[0, -1]] if z.size > 1 else z))
     return bool(np.all(np.max(np.nan_to_num(h), axis=1) > 0.01))
@@ -91,8 +91,8 @@ def _change(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.max(change, initial=0.0, where=np.isfinite(change)))
 
 
-#: The most nodes over the propagating waves by which a beam is looked for where it lands, and the most terms of their sum: beyond,
-#: no peak outside is known, and estimates are larger.
+#: The most nodes over the propagating waves that search for peaks outside, and the most terms of their sum, a few tenths of a second:
+#: beyond, no such peak is known, and estimates are larger.
 MOST_RAYS, MOST_LOOKED_AT = 300_000, 1e7
 
 
@@ -104,7 +104,7 @@ def _brightness(
     angles: np.ndarray,
     x: np.ndarray,
 ) -> np.ndarray:
-    """The largest |p| of propagating waves at positions x, roughly, the less of two sums over them: (angles, Z)."""
+    """The largest |p| of propagating waves at positions x, roughly, the lesser of two sums over them: (angles, Z)."""
     x = x - sources.beam.centre
     path = float(z.max()) - sources.beam.z0 + s.thickness
     count = 60 + 0.6 * s.k0 * (float(np.max(np.abs(x))) + path)
@@ -121,28 +121,31 @@ def _brightness(
     return np.nan_to_num(largest.min(axis=0), nan=0.0, posinf=0.0)
 
 
-def arriving_band(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> float:
-    """|kx| up to which more than `tolerance` of the strongest plane wave arrives on some plane: what the slab lets through."""
-    k = np.geomspace(0.01 * reach.k0, reach.band, 400)
-    h = np.abs(checks.transfer(k.astype(complex), checks.z))
+def _strengths(s: SampledSlab, checks: Checks, k: np.ndarray) -> np.ndarray:
+    """|S H| of plane waves to both sides on each plane, of the strongest beam; 0 where it is not finite; (Z, n)."""
     launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
-    size = np.nan_to_num(h * launched * k, nan=0.0, posinf=0.0)  # by decade of kx
+    return np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+
+
+def arriving_band(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float) -> float:
+    """|kx| up to which more than `tolerance` of the strongest plane wave arrives on any plane."""
+    k = np.geomspace(0.01 * extent.k0, extent.band, 400)
+    size = _strengths(s, checks, k) * k  # |S H| dkx for equal steps of log kx
     size = np.maximum.accumulate(size[:, ::-1], axis=1)[:, ::-1]  # edges have spectra with zeros
     strong = np.any(size > tolerance * size.max(axis=1, keepdims=True), axis=0)
     last = int(np.flatnonzero(strong)[-1]) if np.any(strong) else 0
     return float(k[min(last + 1, k.size - 1)])
 
 
-def cut_spectra(s: SampledSlab, checks: Checks, reach: Extent, tolerance: float) -> np.ndarray:
+def cut_spectra(s: SampledSlab, checks: Checks, extent: Extent, tolerance: float) -> np.ndarray:
     """Every |kx| in the band at which a spectrum is cut off while more than `tolerance` of the strongest plane wave arrives there."""
     ends = checks.sources.spectrum_ends(s.k0)
-    ends = ends[(ends > 0) & (ends <= reach.band * (1 + 1e-9))]
+    ends = ends[(ends > 0) & (ends <= extent.band * (1 + 1e-9))]
     if not ends.size:
         return ends
-    # spectra of edges have zeros: the last twentieth in front of each end stands for it
+    # spectra of edges have zeros: an end counts by the largest of nine places in the last twentieth before it
     before = ends[:, None] * np.linspace(0.95, 1 - 1e-12, 9)
     k = np.concatenate([np.linspace(0.01, 1, 100) * ends[-1], before.ravel()])
-    launched = np.max(np.abs(checks.sources.spectra(k, s.k0)) + np.abs(checks.sources.spectra(-k, s.k0)), axis=0)
-    size = np.nan_to_num(np.abs(checks.transfer(k.astype(complex), checks.z)) * launched, nan=0.0, posinf=0.0)
+    size = _strengths(s, checks, k)
     at = size[:, 100:].reshape(size.shape[0], *before.shape).max(axis=2)
     return ends[np.any(at > tolerance * size.max(axis=1, keepdims=True), axis=0)]

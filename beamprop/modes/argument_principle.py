@@ -6,7 +6,7 @@ A function is given as (value, logarithm), ``value exp(logarithm)``, so that it 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -44,11 +44,11 @@ def windings(
 ) -> np.ndarray:
     """Turns of several D about 0, each along its own closed path: paths (P, n), turns (P,).
 
-    A step is halved until both halves change log D by small and nearly equal amounts that agree with D'/D at either end: whole
-    turns between two points do not show in D itself, and a slab many wavelengths thick makes many. Steps shorter than `finest` are
-    not halved (a zero lies on the path). D'/D is taken at every point if `thorough`, or if it is large at any of every SPARSE-th
-    point, which detects slabs whose D turns fast along the whole path, and clusters of zeros. TooManyValues if more than `most`
-    steps are needed.
+    A step is halved until both halves change log D by small and nearly equal amounts that agree with D'/D at either end: D itself
+    does not show whole turns between two points, and D of a slab many wavelengths thick makes many. Steps shorter than `finest` are
+    not halved (a zero lies on the path). D'/D is evaluated at every point if `thorough`, or if it is large at any SPARSE-th point,
+    which detects a D that turns fast along the whole path, and clusters of zeros. TooManyValues if more than `most` values are
+    needed.
     """
     count, n = paths.shape
     onward = np.arange(1, n + 1) % n
@@ -58,7 +58,7 @@ def windings(
     most -= paths.size
     if most < 0:
         raise TooManyValues
-    # in one call: the path's points, the middles of its steps, and points just behind those where D'/D is checked
+    # in one call: the path's points, the middles of its steps, and a point just beyond each one where D'/D is checked
     points = np.concatenate([paths, (paths + ahead) / 2, (paths + beside)[:, checked]], axis=1)
     values = logarithm(*f(points, np.arange(count)))
     logs = values[:, :n]
@@ -83,18 +83,23 @@ def windings(
         steps = _halved(f, steps, ~resolved, count == 1)
 
 
-#: D'/D is checked at every SPARSE-th point of a path. A change of log D over a step above FAST may be a whole turn (2 pi) off; the
-#: margin covers D'/D at the step's end standing for its mean.
+#: D'/D is checked at every SPARSE-th point of a path, for a D that turns fast does so over neighbouring steps too. A change of log D by
+#: 2 pi over a step may be taken for none; FAST leaves a third of that to D'/D at the step's end not being its mean.
 SPARSE, FAST = 4, 4.0
-#: Difference quotients for D'/D take these shares of a step. The fine one is right up to a change of log D by 1600 over the step
-#: (pi / FINE, on a path's first steps); the coarse one magnifies rounding errors less, near clusters of zeros.
+#: Difference quotients for D'/D take these shares of a step. FINE is right up to a change of log D by pi/FINE = 1600 over a first step of a
+#: path, COARSE up to 100 over a halved one: it magnifies rounding 16 times less, near clusters of zeros.
 FINE, COARSE = 1 / 512, 1 / 32
-#: Change of log D over a step, by D'/D, from which on the step's halves take the fine share.
+#: Change of log D over a step, by D'/D, from which on its halves take the fine share: a tenth of what COARSE is right for.
 WILD = 20
+#: A step is resolved if log D changes by less than TURNED over it, a quarter of a turn, that of its halves differs by less than BENT, and
+#: D'/D at its ends predicts it within TURNED. A zero at the distance d from a step of length l changes log D by 2 atan(l/2d): these resolve
+#: d > l/2; a plain choice, as smaller ones halve more steps and larger ones may miss a turn. Counts of two outlines are compared in
+#: `guided.find_modes`.
+TURNED, BENT = 1.5, 0.4
 
 
 class _Steps(NamedTuple):
-    """Steps of paths: index of the path, start, middle and end, log D there, and D'/D at start and end (or empty)."""
+    """Steps of paths: the path's index; start, middle and end; log D there; and D'/D at start and end, or nothing."""
 
     owner: np.ndarray
     points: tuple[np.ndarray, ...]
@@ -111,9 +116,9 @@ def _resolved(steps: _Steps, finest: float) -> tuple[np.ndarray, np.ndarray]:
     """Which steps need not be halved, and the change of log D over each."""
     first, second = _change(steps.logs[0], steps.logs[1]), _change(steps.logs[1], steps.logs[2])
     change, length = first + second, steps.points[2] - steps.points[0]
-    resolved = (np.abs(change) < 1.5) & (np.abs(first - second) < 0.4)
+    resolved = (np.abs(change) < TURNED) & (np.abs(first - second) < BENT)
     for rate in steps.rates:
-        resolved &= np.abs(rate * length - change) < 1.5
+        resolved &= np.abs(rate * length - change) < TURNED
     return resolved | (np.abs(length) < finest), change
 
 
@@ -123,7 +128,7 @@ def _halved(f: ManyDispersions, steps: _Steps, coarse: np.ndarray, single: bool)
     start, stop = np.concatenate([a, m]), np.concatenate([m, b])
     owner, middle = np.tile(steps.owner[coarse], 2), (start + stop) / 2
     beside, extra = COARSE * (b - m), 0
-    if steps.rates:  # D'/D at the middles, where the second halves start, takes a point just behind each
+    if steps.rates:  # D'/D at the middles, where the second halves start, takes a point just beyond each
         rate_a, rate_b = (rate[coarse] for rate in steps.rates)
         wild = np.maximum(np.abs(rate_a), np.abs(rate_b)) * np.abs(b - a) > WILD
         beside, extra = np.where(wild, FINE / COARSE, 1.0) * beside, m.size
@@ -157,6 +162,10 @@ def _change(start: np.ndarray, stop: np.ndarray) -> np.ndarray:
     return change
 
 
+#: Where a box is halved: not in the middle, on which symmetry may put a zero, nor at a simple fraction.
+CUT = 0.4871
+
+
 class Box(NamedTuple):
     """A rectangle in the plane of kx."""
 
@@ -171,11 +180,11 @@ class Box(NamedTuple):
         return outlines(left, right, low, high, nodes, None if near is None else np.array([near]))[0]
 
     def halves(self) -> tuple[Box, Box]:
-        """Two parts of slightly unequal size, because symmetry may put a zero on the middle."""
+        """Two parts of slightly unequal size, CUT and the rest."""
         if self.right - self.left > self.high - self.low:
-            cut = self.left + 0.4871 * (self.right - self.left)
+            cut = self.left + CUT * (self.right - self.left)
             return self._replace(right=cut), self._replace(left=cut)
-        cut = self.low + 0.4871 * (self.high - self.low)
+        cut = self.low + CUT * (self.high - self.low)
         return self._replace(high=cut), self._replace(low=cut)
 
     def holds(self, k: complex, slack: float) -> bool:
@@ -183,7 +192,8 @@ class Box(NamedTuple):
         return (self.left - slack <= k.real <= self.right + slack) and (self.low - slack <= k.imag <= self.high + slack)
 
 
-#: Beside a branch point a side of a box has additional nodes, at these distances over that of the branch point from 0.
+#: Beside a branch point a side of a box has additional nodes, at these distances over that of the branch point from 0: kz goes as the root
+#: of the distance, and factors of 3 follow it.
 BESIDE_BRANCH = np.array([-0.2, -0.06, -0.02, 0.0, 0.02, 0.06, 0.2])
 
 
@@ -194,12 +204,12 @@ def outlines(
     high: np.ndarray,
     nodes: int,
     near: np.ndarray | None = None,
-    lifted: tuple[np.ndarray, np.ndarray] | None = None,
+    lifted: Sequence[np.ndarray] | None = None,
 ) -> np.ndarray:
     """Outlines of boxes (P,), counter-clockwise, (P, n): `nodes` on the longer sides, a quarter on sides half as long or less.
 
-    With `near` (P,), Re kx of a branch point, there are additional nodes on the horizontal sides beside it. `lifted` raises the
-    upper side, to the right of Re kx = lifted[0], by lifted[1].
+    `windings` adds nodes where D turns fast. With `near` (P,), Re kx of a branch point, there are additional
+    nodes on the horizontal sides beside it. `lifted` raises the upper side, to the right of Re kx = lifted[0], by lifted[1].
     """
     width, height = right - left, high - low
     across, up = (
@@ -224,15 +234,16 @@ def outlines(
     return out
 
 
-#: Zeros of D at relative distances below this are one cluster, for instance modes of two faces that are not coupled: rounding
-#: errors of a double zero are of the order of the square root of EPS, 1e-8, times those of D.
+#: Zeros of D at relative distances below this are one cluster, for instance modes of two faces that are not coupled: a double zero rounds
+#: to the square root of D's relative rounding: 1e-8, and 1e-6 where that is 1e-12.
 CLUSTER = 1e-6
 
 
 def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.inf) -> list[complex]:
-    """The `total` zeros of D inside a box: halved until Newton's method has a single one to locate; of a cluster, its middle.
+    """The `total` zeros of D inside a box, halved until each part holds a single one for Newton's method; of a cluster, its middle.
 
-    TooManyValues if an outline needs more than `most` values of D, or the boxes more than `most` / 200 outlines.
+    TooManyValues if an outline needs more than `most` values of D, or the boxes more than `most` / 200 outlines: an outline takes some
+    200 values.
     """
     located: list[complex] = []
     outlined = 0
@@ -253,7 +264,7 @@ def zeros(f: Dispersion, box: Box, scale: float, total: int, most: float = math.
 
 
 def _located(f: Dispersion, box: Box, count: int, scale: float, known: list[complex]) -> complex | None:
-    """The zero of a box that holds a single one, or the middle of the cluster of a small box; None if it has to be halved."""
+    """The zero of a box with a single one, or the middle of the cluster in a small box; None if the box has to be halved."""
     size = max(box.right - box.left, box.high - box.low)
     middle = complex((box.left + box.right) / 2, (box.low + box.high) / 2)
     small = size < min(1e-6 * scale, CLUSTER * abs(middle))
@@ -264,23 +275,23 @@ def _located(f: Dispersion, box: Box, count: int, scale: float, known: list[comp
         return k
     if not small:
         return None
-    # a double zero is known to half the digits only, and the boxes' sides may have parted it: the same cluster has one value
+    # a double zero is located to half the digits only, and sides of boxes may have parted it: all of a cluster get the same value
     k = k if box.holds(k, size) else middle
     return next((zero for zero in known if abs(k - zero) < CLUSTER * abs(k)), k)
 
 
-def refine(f: Dispersion, k: complex, reach: float, steps: int = 40) -> tuple[complex, float]:
-    """Newton's method with a numerical derivative, steps of at most `reach`: the zero, and the size of the last step."""
-    step = complex(reach)
+def refine(f: Dispersion, k: complex, longest: float, steps: int = 40) -> tuple[complex, float]:
+    """Newton's method with a numerical derivative, steps of at most `longest`: the zero, and the size of the last step."""
+    step = complex(longest)
     for _ in range(steps):
-        h = max(1e-6 * abs(step), 1e-9 * abs(k), 1e-300)
+        h = max(1e-6 * abs(step), 1e-9 * abs(k), 1e-300)  # D at k + h keeps 7 digits of a difference; its error is h^2
         value, log = f(np.array([k, k + h, k - h]))
         value = value * np.exp(log - log[0])
         slope = (value[1] - value[2]) / (2 * h)
         if slope == 0 or not np.isfinite(slope):
             return k, math.inf
         step = -value[0] / slope
-        step *= min(1.0, reach / abs(step)) if step else 1.0
+        step *= min(1.0, longest / abs(step)) if step else 1.0
         k += step
         if abs(step) < 1e-13 * abs(k):
             break
@@ -288,7 +299,7 @@ def refine(f: Dispersion, k: complex, reach: float, steps: int = 40) -> tuple[co
 
 
 def real_zeros(f: Dispersion, left: float, right: float, samples: int = 600, many: float = math.inf) -> list[complex]:
-    """Zeros of a lossless slab on the axis beyond the branch points, where D is real up to a constant phase: its changes of sign.
+    """Zeros of a lossless slab's D on the axis beyond the branch points, by its changes of sign: it is real up to a constant phase.
 
     TooManyModes if there are more than `many`.
     """

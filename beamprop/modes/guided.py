@@ -1,8 +1,7 @@
 """Guided modes of a slab: zeros of the dispersion function in the plane of complex kx, located by the argument principle.
 
 Loss moves a mode off the real axis: up if it carries energy along Re kx (forward), down if against it (backward, which
-negative densities allow). A mode of a lossless slab lies on the axis; its direction follows from the way it moves when a
-small loss is added.
+negative densities allow). A mode of a lossless slab lies on the axis; the direction in which a small loss moves it is its own.
 """
 
 from __future__ import annotations
@@ -26,15 +25,15 @@ from .argument_principle import (
     zeros,
 )
 
-#: Relative loss that shows a mode's direction: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Small, because its effect is
-#: magnified in a slab whose densities cancel.
+#: Relative loss that shows a mode's direction: rho -> rho + i LOSS |rho|, 1/K -> 1/K + i LOSS |1/K|. Seven digits above rounding; not more,
+#: because it moves a mode farther the more the densities of a slab cancel.
 LOSS = 1e-8
-#: A box of the search begins this far (relative) to the right of the last branch point.
+#: A box of the search begins this far (relative) to the right of the last branch point: kz/kx, 1.4e-4 there, is clear of rounding.
 BESIDE = 1e-8
 
 
 class Mode(NamedTuple):
-    """One zero: kx [rad/m], +1 forward or -1 backward, the last step of its refinement and its estimated error, over kx."""
+    """A zero of D: kx [rad/m], +1 forward or -1 backward, the last step of its refinement and its estimated error, over kx."""
 
     kx: complex
     direction: int
@@ -58,6 +57,7 @@ def find_modes(s: SampledSlab, box: Box, most: float = math.inf) -> tuple[list[M
 
     UncertainCount if outlines with different nodes, or the changes of sign of a lossless slab, contradict each other.
     """
+    # 48 and 61 nodes a side have no common node but the corners
     f = dispersion_of(s)
     total, recount = (winding(f, box.outline(nodes), 1e-9 * box.right, most, thorough=True) for nodes in (48, 61))
     on_axis = real_zeros(f, box.left, box.right) if s.lossless and box.low < 0 < box.high else []
@@ -69,7 +69,7 @@ def find_modes(s: SampledSlab, box: Box, most: float = math.inf) -> tuple[list[M
 
 
 def _checked(s: SampledSlab, f: Dispersion, mode: Mode, cluster: bool) -> Mode:
-    """A mode with its residual, and with the change that rounding errors of the layers make; of a cluster the middle is known."""
+    """A mode with its residual, and its error: its move when layers are rounded anew; of a cluster at least its size."""
     size = abs(mode.kx)
     residual = refine(f, mode.kx, 1e-3 * size, 2)[1] / size
     k, step = refine(dispersion_of(s.rounded()), mode.kx, 1e-3 * size)
@@ -91,7 +91,8 @@ def located(
 ) -> list[complex]:
     """The `total` zeros in a box, those of a lossless slab by changes of sign if all lie on the axis.
 
-    TooManyModes if more than `many` have to be located by halving boxes, or if that takes too long (`most`: see `zeros`).
+    The axis is sampled eight times as finely up to twice, for modes may lie closer together. TooManyModes if more than `many` have
+    to be located by halving boxes, or if that takes more than `most` values of D (see `zeros`).
     """
     f = of(s, 0.0)
     if s.lossless and box.low < 0 < box.high:
@@ -111,7 +112,7 @@ def with_directions(s: SampledSlab, kx: list[complex], of: DispersionOf = disper
 
 def _direction(s: SampledSlab, k: complex, cluster: bool, of: DispersionOf) -> int:
     """+1 if the mode decays along +Re kx, or would with a small loss."""
-    # a cluster is known to half the digits only, and needs more loss to show its direction
+    # nearer to the axis than `blur`, over kx, a mode may lie on it; a cluster, located to half the digits, takes more loss too
     blur, loss = (1e-7, 1e3 * LOSS) if cluster else (1e-9, LOSS)
     if abs(k.imag) > blur * abs(k):
         return 1 if k.imag > 0 else -1

@@ -2,8 +2,8 @@
 
 By limiting absorption a forward mode belongs above the contour on the right half of the axis, and a backward mode (its energy
 flows against its phase, which negative densities and moduli allow) below it. A contour below the axis leaves backward modes
-above it. Up to MOST_WRONG of them get small circles, whose sums are their residues. Where more than that lie beyond all forward
-ones, the contour crosses the axis between the two kinds instead.
+above it. Up to MOST_WRONG of them get small circles, on which the contour's sum is their residue. Where more of them lie beyond all
+forward ones, the contour crosses the axis between the two kinds instead.
 """
 
 from __future__ import annotations
@@ -21,12 +21,14 @@ from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, with_dir
 
 #: Rounding may put a mode that lies nearer to the real axis than this, over k0, on either side (lossless layers beside lossy ones).
 ON_AXIS = 1e-10
-#: The most poles that may be misplaced, and the most values of D that the search for them may take.
+#: The most poles that may be misplaced: their circles take 24 x 32 = 768 nodes, as many as a usual contour has. And the most values of D
+#: that an outline may take: 0.1 s for the LMMD cell, 0.4 s for ten thick layers.
 MOST_WRONG = 24
 MOST_VALUES = 100_000
-#: A crossing is searched for if there are more circles than this.
+#: A crossing is searched for if there are more circles than this: the search takes ten times as long as that for circles, and eight of
+#: these are 256 nodes.
 WITHOUT_CROSSING = 8
-#: Steps along an outline that are shorter than this, over its largest Re kx, are not halved: a zero lies on it.
+#: Steps along an outline that are shorter than this, over its largest Re kx, are not halved: a zero lies on it, to some rounding of D.
 FINEST = 1e-12
 
 
@@ -43,7 +45,7 @@ class MisplacedPoles(NamedTuple):
 
 
 NONE = MisplacedPoles((), ())
-#: More modes than a search can separate.
+#: The answer where there are more modes than a search can separate.
 UNCLEAR = MisplacedPoles((complex("nan"),), (0.0,))
 
 
@@ -126,10 +128,9 @@ def _branch_beside(s: SampledSlab) -> float:
 
 
 def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
-    """Whether there is a mode in a box whose upper side is raised by `above` to the right of `edge`: mostly there is none."""
-    values = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
-    left, right, low, high, near, beyond, lift = values
-    path = outlines(left, right, low, high, 48, near, (beyond, lift))[0]
+    """Whether there is a mode in a box whose upper side is raised by `above` to the right of `edge`: one outline, as mostly none is."""
+    left, right, low, high, near, *lifted = (np.array([v]) for v in (*box, _branch_beside(s), edge, above))
+    path = outlines(left, right, low, high, 48, near, lifted)[0]
     return winding(dispersion_of(s), path, FINEST * box.right, MOST_VALUES) > 0
 
 
@@ -145,7 +146,7 @@ def modes_in(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> list
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
-    """Clusters of modes that share a circle, because their members are known to half the digits only."""
+    """Clusters of modes that share a circle, because their members are located to half the digits only."""
     groups: list[list[complex]] = []
     for k in modes:
         near = [group for group in groups if abs(k - group[0]) < 10 * CLUSTER * abs(k)]
@@ -157,7 +158,11 @@ def _grouped(modes: list[complex]) -> list[list[complex]]:
 
 
 def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], known: list[complex]) -> float:
-    """Radius of a disc around a group of modes that holds no mode outside the group, known or not, and no branch point."""
+    """Radius of a disc around a group of modes that holds no further mode, known or not, and no branch point.
+
+    It ends at 0.4 of the way to the nearest known singularity: n nodes on it alias that by 0.4^n. Unknown modes are counted by the
+    argument principle, and the radius halved until there is none.
+    """
     branches = (complex(on_the_right(b)) for b in s.branch_points)
     radius = 0.4 * min((abs(k - point) for point in (*known, *branches) if point not in group), default=abs(k))
     radius = min(radius, 0.4 * abs(k))
@@ -173,24 +178,24 @@ def _free_disc(s: SampledSlab, f: Dispersion, k: complex, group: list[complex], 
 
 # --- a contour that crosses the axis ----------------------------------------------------------------------
 
-#: Number of places for a crossing that are compared, between the last branch point and the band's end.
+#: Places for a crossing that are compared between the last branch point and the band's end: each takes two outlines.
 PLACES = 24
-#: Relative losses with which modes are counted for a crossing, in this order. A passive slab with loss has no pole on the axis: with
-#: more loss modes stay on their side of it, and lie further apart.
+#: Relative losses with which modes are counted for a crossing, in this order. A passive slab with loss has no pole on the axis. With more
+#: loss modes stay on their side of it: 1e-8 is `guided.LOSS`, and 1e-5 is for modes that this leaves too near to the axis to be counted.
 LOSSES = (1e-8, 1e-5)
-#: The most values of D for an interval between two places.
+#: The most values of D for an interval between two places: a fifth of MOST_VALUES, for there are 2 PLACES of them.
 MOST_PER_INTERVAL = 20_000
 
 
 def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> MisplacedPoles | None:
-    """A contour that crosses the axis where that leaves the fewest poles misplaced; None if these are still too many."""
-    edge = s.last_branch * (1 + 1e-3)
+    """The crossing of the axis that leaves the fewest poles misplaced; None if these are too many still."""
+    edge = s.last_branch * (1 + 1e-3)  # outlines keep off the branch point, and fit between it and the band's end
     if band < 1.1 * edge:
         return None
     places = np.geomspace(edge, band, PLACES + 1)
     for loss in LOSSES:
         f = dispersion_of(s, loss)
-        # modes left below a contour that has crossed, and above one that has not: at the places from 1 on
+        # modes left below the contour beyond a crossing, and above it before: at the places from 1 on
         below, above = _counted(f, places, -depth, 1), _counted(f, places, depth, -1)
         wrong = below[:-1] + above[1:]
         if np.min(wrong) <= MOST_WRONG:
@@ -201,7 +206,7 @@ def _with_crossing(s: SampledSlab, depth: float, band: float, start: float) -> M
 def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> np.ndarray:
     """Number of modes between the axis and `height`, cumulative over the intervals between two places.
 
-    Intervals are added up from the left (`onward` 1) or from the right (-1) to MOST_WRONG modes, and are inf from there on.
+    Added up from the left (`onward` 1) or from the right (-1); inf from where there are more than MOST_WRONG.
     """
     counts = np.full(places.size - 1, np.inf)
     total = 0.0
@@ -223,7 +228,7 @@ def _counted(f: Dispersion, places: np.ndarray, height: float, onward: int) -> n
 def _crossing_at(
     s: SampledSlab, f: Dispersion, places: np.ndarray, wrong: np.ndarray, contour: tuple[float, float, float]
 ) -> MisplacedPoles:
-    """The crossing in the longest run of places with the fewest misplaced poles, and circles around these."""
+    """The crossing in the longest run of places that leave the fewest poles misplaced, with discs around these."""
     depth, band, start = contour
     least = np.flatnonzero(wrong == wrong.min())
     runs = np.split(least, np.flatnonzero(np.diff(least) > 1) + 1)
@@ -240,8 +245,8 @@ def _crossing_at(
 def _free_gap(f: Dispersion, low: float, high: float, depth: float, edge: float, band: float) -> tuple[float, float]:
     """A crossing of the axis between `low` and `high`, and the distance around it in which there is no mode."""
     crossing = math.sqrt(low * high)
-    gap = min(crossing - edge, band - crossing) * (1.0 if high > low else 0.3)
-    for _ in range(8):
+    gap = min(crossing - edge, band - crossing) * (1.0 if high > low else 0.3)  # a single place has modes on both sides
+    for _ in range(8):  # down to 1/128 of it
         box = Box(crossing - gap, crossing + gap, -max(depth, gap), max(depth, gap))
         if winding(f, box.outline(24), FINEST * band, MOST_VALUES) == 0:
             return crossing, gap

@@ -35,17 +35,22 @@ class PlaneWaves(NamedTuple):
 
     def evaluator(self) -> Evaluate:
         """A function of positions (F, m) -> p there, (F, m)."""
-        # plain: the sum over k of right e^{ikx} + left e^{-ikx}. With k = m ds - i sigma, e^{ikx} is a power of e^{i ds x} times
-        # e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
-        contour, n = self.contour, self.contour.k.shape[-1]
-        amplitudes = np.stack([self.right, np.conj(self.left)], axis=-1)
+        # plain: the sum over k of right e^{ikx} + left e^{-ikx}. With k = m ds - i sigma, e^{ikx} is e^{sigma x} times a power of
+        # e^{i ds x}, the product of a coarse and a fine one, by which the sum is taken in two steps. What goes to the left has
+        # their conjugates.
+        contour, (count, n) = self.contour, self.right.shape
+        coarse_size = -(-n // STEP)
+        padded = np.zeros((count, 2, coarse_size * STEP), complex)
+        padded[:, 0, :n], padded[:, 1, :n] = self.right, np.conj(self.left)
+        by_fine = np.ascontiguousarray(padded.reshape(count, 2 * coarse_size, STEP).swapaxes(1, 2))
         sigma = np.asarray(contour.sigma)[:, None]
 
         def value(x: np.ndarray) -> np.ndarray:
             angle = 1j * (np.asarray(contour.step)[:, None] * x)[..., None]
-            coarse = np.exp(angle * (contour.first + np.arange(0, n, STEP)))
-            powers = (coarse[..., None] * np.exp(angle * np.arange(STEP))[..., None, :]).reshape(*x.shape, -1)[..., :n]
-            right, left = np.moveaxis(powers @ amplitudes, -1, 0)
+            coarse = np.exp(angle * (contour.first + STEP * np.arange(coarse_size)))
+            inner = np.exp(angle * np.arange(STEP)) @ by_fine
+            sums = inner.reshape(*x.shape, 2, coarse_size) @ coarse[..., None]
+            right, left = np.moveaxis(sums[..., 0], -1, 0)
             grow = np.exp(sigma * x)
             return np.asarray(right * grow + np.conj(left) / grow)
 
@@ -54,7 +59,7 @@ class PlaneWaves(NamedTuple):
 
 def _both_contours(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves]:
     """The plane waves at the plane, on a contour and on a second one for the error; one response for both."""
-    contours = paths.straight_contour(plan), paths.straight_contour(plan.other())
+    contours = paths.straight_contour(plan), paths.straight_contour(plan.second_plan())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
     h = plane(k)
     right, left = sums.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays.exponentials import expm1_of_parts
 from ..arrays.matmul import BLOCK
 from ..media.values import LayerValues, SegmentValues
 from .cell import Matrix, matrix_back, times
 from .layer import State, at_frequencies, entire, layer_back, one_layer, several_layers
-from .periods import TINY, BlochPhase, faded, power_back
+from .periods import FADED, TINY, BlochPhase, power_back
 from .recursion import Places, Station, places_of, segment_of
 
 
@@ -160,15 +161,24 @@ def _in_two_terms(
     x/(Lambda^2 - 1): factor 1 multiplies `far`, factor x (n at the band edge) multiplies far/(1 + Lambda) + Lambda/(Lambda^2 - 1)
     (M^-1 - I) far; both times exp(log - i phase n) scale.
     """
-    reduced, phase = b.reduced[0], b.phase[0]
-    lam, x2 = np.exp(1j * reduced), np.expm1(2j * reduced)
+    reduced, flip, less_one, lam = b.reduced[0], b.flip[0], b.less_one[0], b.eigenvalue[0]
+    x2 = less_one * (1 + lam)
     edge = np.abs(x2) < TINY
     moved = _moved(m, b, far)
     by_far, by_moved = np.where(edge, 0.0, 1 / (1 + lam)), lam / np.where(edge, 1.0, x2)
     p, q = (np.concatenate([v, by_far * v + by_moved * dv]) for v, dv in zip(far[:2], moved[:2], strict=True))
+    # e^{-i phase n} and e^{2i phase n} - 1 have the sine and the cosine of Re(phase n) in common
+    turn, decay = np.multiply.outer(behind, reduced.real), np.multiply.outer(behind, reduced.imag)
+    sine, cosine = np.sin(turn), np.cos(turn)
+    x = expm1_of_parts(np.expm1(np.maximum(-2 * decay, FADED)), sine, cosine)
+    log = far.log[0] - near_log
+    size = np.exp(_faint(decay + log.real))
+    if np.any(flip):
+        size = np.where(flip & (behind % 2 == 1)[:, None], -size, size)
     factors = np.empty((behind.size, 2, reduced.size), complex)
-    factors[:, 0] = np.exp(_faint(far.log[0] - near_log + np.multiply.outer(behind, -1j * phase))) * scale
-    x = np.expm1(faded(np.multiply.outer(behind, 2j * reduced)))
+    np.multiply(cosine, size, out=factors[:, 0].real)
+    np.multiply(sine, -size, out=factors[:, 0].imag)
+    factors[:, 0] *= np.exp(1j * log.imag) * scale
     if np.any(edge):
         x = np.where(edge, behind[:, None], x)
     np.multiply(x, factors[:, 0], out=factors[:, 1])
@@ -185,7 +195,7 @@ def _moved(m: Matrix, b: BlochPhase, far: State) -> State:
 
 def _faint(exponent: np.ndarray) -> np.ndarray:
     """Exponents below -650 moved to -inf, in place: no denormal numbers."""
-    exponent[exponent.real < -650] = -np.inf
+    exponent[exponent < -650] = -np.inf
     return exponent
 
 

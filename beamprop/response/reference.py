@@ -147,23 +147,36 @@ def chi(k: np.ndarray, delta: float | np.ndarray) -> np.ndarray:
     return erfc(-k / delta) / 2
 
 
+def plane_waves(k: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(i k x) and exp(-i k x): (n, X) each."""
+    return np.exp(1j * np.multiply.outer(k, x)), np.exp(-1j * np.multiply.outer(k, x))
+
+
+def folded(values: np.ndarray, first: int, n: int) -> np.ndarray:
+    """Values (..., count) of harmonics first, first + 1, ... added up modulo n: (..., n)."""
+    out = np.zeros((*values.shape[:-1], n), values.dtype)
+    for j in range(values.shape[-1]):
+        out[..., (first + j) % n] += values[..., j]
+    return out
+
+
 def field(
     h: np.ndarray, right: np.ndarray, left: np.ndarray, k: np.ndarray, x: np.ndarray, order: int = 0
 ) -> np.ndarray:
     """The order-th derivative of p(x) = sum_k h (right e^{ikx} + left e^{-ikx}): (Z, X) of h (Z, n) and amplitudes (n,)."""
-    forward = np.exp(1j * np.multiply.outer(k, x))
+    forward, backward = plane_waves(k, x)
     ik = (1j * k[:, None]) ** order
-    return h @ (ik * right[:, None] * forward + (-1) ** order * ik * left[:, None] / forward)
+    return h @ (ik * right[:, None] * forward + (-1) ** order * ik * left[:, None] * backward)
 
 
 def over_waves(k: np.ndarray, amplitudes: np.ndarray, x: np.ndarray) -> np.ndarray:
     """sum_k amplitudes exp(i k x): (Z, X) of amplitudes (Z, n)."""
-    return amplitudes @ np.exp(1j * np.multiply.outer(k, x))
+    return amplitudes @ plane_waves(k, x)[0]
 
 
 def over_positions(k: np.ndarray, weights: np.ndarray, x: np.ndarray) -> np.ndarray:
     """sum_x weights exp(-i k x): (n, B) of weights (X, B)."""
-    return np.exp(-1j * np.multiply.outer(k, x)) @ weights
+    return plane_waves(k, x)[1] @ weights
 
 
 def logarithm(value: np.ndarray, log: np.ndarray) -> np.ndarray:

@@ -62,7 +62,7 @@ def plane_waves(options: argparse.Namespace) -> list[Row]:
     except subprocess.CalledProcessError:
         print("navette 0.8.0 is not installed here (it needs Python 3.12): rows skipped", file=sys.stderr)
         return rows
-    assert all(abs(found - float(ds.transmissivity[0])) < 1e-9 for _, found in (alone, both))
+    assert all(abs(share - float(ds.transmissivity[0])) < 1e-9 for _, share in (alone, both))
     # as navette in its process: again and again
     (ours,) = measure(
         lambda: bp.scattering(SLAB, FREQUENCY, kx_over_k0=sine, estimate=False), repeats=20 * options.repeats
@@ -92,7 +92,7 @@ def widths(options: argparse.Namespace) -> list[Row]:
 
 
 def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
-    """A frequency's scene, and the line that `beam_width` takes for it."""
+    """A slab at a frequency, and the contour that `beam_width` takes for it."""
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     path = np.array([SLAB.thickness])
     middle, half = stationary_phase.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)

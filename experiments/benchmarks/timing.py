@@ -20,7 +20,7 @@ class Row:
     ours: float
     limit_name: str
     limit: float
-    asked: str
+    required: str
     holds: bool | None
     unit: str = "s"
 
@@ -34,12 +34,12 @@ def measure(*works: Work, repeats: int = 9) -> list[float]:
     """Median times of several works, run in turn so that all meet the same load; one run of each to warm up."""
     times: list[list[float]] = [[] for _ in works]
     for number in range(repeats + 1):
-        for work, found in zip(works, times, strict=True):
+        for work, seconds in zip(works, times, strict=True):
             start = time.perf_counter()
             work()
             if number:
-                found.append(time.perf_counter() - start)
-    return [statistics.median(found) for found in times]
+                seconds.append(time.perf_counter() - start)
+    return [statistics.median(seconds) for seconds in times]
 
 
 def process(*arguments: str) -> Work:
@@ -65,6 +65,6 @@ def table(rows: list[Row]) -> str:
         ratio = f"{r.ratio:.3g}" if r.ratio > 0.1 else f"1/{1 / r.ratio:.3g}"
         lines.append(
             f"| {r.work} | {amount(r.ours, r.unit)} | {r.limit_name} | {amount(r.limit, r.unit)} | {ratio} "
-            f"| {r.asked} | {holds} |"
+            f"| {r.required} | {holds} |"
         )
     return "\n".join(lines)

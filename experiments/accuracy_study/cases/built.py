@@ -22,7 +22,7 @@ def _built(slab: bp.Slab, beam: object, x: np.ndarray, z: list[float], rtol: flo
 
 
 class Among(NamedTuple):
-    """A question built for a term, asked for among many angles of the same beam."""
+    """A question built for a term, requested among many angles of the same beam."""
 
     case: Case
     angles: np.ndarray  #: degree, that of the case's beam among them

@@ -1,4 +1,4 @@
-"""Which case has which number, and the many angles and planes among which some are asked for."""
+"""Which case has which number, and the many angles and planes among which a case is requested."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .slabs import SLABS
 #: Cases of the whole study: those of the first fifteen classes, and as many hard ones as make 3000.
 CASES = 3000
 KINDS = [*SLABS, *HARD]
-#: Grids of more points, and fields wider in wavelengths, than these are asked for by themselves.
+#: Grids of more points, and fields wider in wavelengths, than these are requested by themselves.
 MANY, WIDE = 5000, 3000
 
 
@@ -47,7 +47,7 @@ def quick_numbers() -> list[int]:
 
 
 def angles_of(number: int, case: Case) -> np.ndarray | None:
-    """For one case in seven: 40 or 150 angles among which its own is asked for."""
+    """For one case in seven: 40 or 150 angles among which its own is requested."""
     if number % 7 or getattr(case.beam, "form", "launch") == "rotated" or (number >= FIRST and is_large(case)):
         return None
     rng = np.random.default_rng([SEED, number, 1])
@@ -57,7 +57,7 @@ def angles_of(number: int, case: Case) -> np.ndarray | None:
 
 
 def map_of(number: int, case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """x and z that are asked for; for one case in five a map of many planes and positions, the case's own among them."""
+    """x and z that are requested; for one case in five a map of many planes and positions, the case's own among them."""
     if number % 5 != 1 or number % 7 == 0 or (number >= FIRST and is_large(case)):
         return case.x, case.z
     rng = np.random.default_rng([SEED, number, 2])

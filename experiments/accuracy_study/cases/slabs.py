@@ -72,7 +72,7 @@ def _rigid_x(rng: np.random.Generator, lam: float) -> bp.Slab:
     )
 
 
-def _other_behind(rng: np.random.Generator, lam: float) -> bp.Slab:
+def _water_or_helium_behind(rng: np.random.Generator, lam: float) -> bp.Slab:
     after = WATER if rng.random() < 0.5 else HELIUM
     if rng.random() < 0.5:
         return bp.Slab(modulated_cell(rng, rng.random() < 0.5), int(log_uniform(rng, 1, 300)), after=after)
@@ -140,7 +140,7 @@ def _backward(rng: np.random.Generator, lam: float) -> bp.Slab:
     )
 
 
-def _one_or_many(rng: np.random.Generator, lam: float) -> bp.Slab:
+def _single_or_many_periods(rng: np.random.Generator, lam: float) -> bp.Slab:
     return bp.Slab(modulated_cell(rng, rng.random() < 0.7), int(rng.choice([1, 100_000])))
 
 
@@ -152,12 +152,12 @@ SLABS: dict[str, Callable[[np.random.Generator, float], bp.Slab]] = {
     "air alone": _nothing,
     "LMMD, lossless": _lmmd_lossless,
     "LMMD, lossy": _lmmd_lossy,
-    "LMMD, 1 or 100 000 periods": _one_or_many,
+    "LMMD, 1 or 100 000 periods": _single_or_many_periods,
     "uniform fluid": _positive,
     "negative density or modulus": _negative,
     "double negative": _double_negative,
     "density_x infinite": _rigid_x,
-    "water or helium behind": _other_behind,
+    "water or helium behind": _water_or_helium_behind,
     "water in front": _water_in_front,
     "lossy half-space behind": _lossy_behind,
     "opaque": _opaque,

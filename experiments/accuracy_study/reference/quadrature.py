@@ -189,7 +189,7 @@ def field_sum(
     return out
 
 
-def brightness(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
+def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     """|p| of the propagating waves where the beam lands on each plane: errors are over the largest |p| of a plane, (Z,).
 
     Rays of nine strong plane waves, and panels over the strong part of the spectrum; rays that go too far are left out.
@@ -215,16 +215,16 @@ def brightness(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     return np.nan_to_num(np.abs(p).max(axis=1))
 
 
-def _bright(s: _Setting, k: np.ndarray, w: np.ndarray, kz: Any, p: np.ndarray) -> np.ndarray:
+def _uncancelled(s: _Setting, k: np.ndarray, w: np.ndarray, kz: Any, p: np.ndarray) -> np.ndarray:
     """The larger of |p| and |v_z| on each plane: what cancels where a plane is dark, (Z,)."""
     v = field_sum(s.source, lambda kk: s.response(kk, True), k, w, kz, s.x)
     return np.nan_to_num(np.maximum(np.abs(p).max(axis=1), np.abs(v).max(axis=1)), posinf=0.0)
 
 
-def _cancelled(s: _Setting, bright: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _cancelled(s: _Setting, uncancelled: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """What rounding of lengths and phases leaves unknown on each plane where waves cancel; (Z,)."""
     way = np.maximum(np.abs(s.case.z), s.m.thickness) - s.case.beam.z0
-    return np.where(bright > 10 * scale, 4 * EPS * (1 + s.m.k0 * way) * bright / scale, 0.0)
+    return np.where(uncancelled > 10 * scale, 4 * EPS * (1 + s.m.k0 * way) * uncancelled / scale, 0.0)
 
 
 def _rounding(s: _Setting) -> float:
@@ -241,9 +241,9 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     wrong, shallow = ([], 1.0) if s.rotated or sided else _misplaced(s)
     if wrong is None:
         return "backward modes not located"
-    elsewhere = np.zeros(case.z.size) if s.near is not None else brightness(s.m, s.source, case.z)
+    elsewhere = np.zeros(case.z.size) if s.near is not None else largest_elsewhere(s.m, s.source, case.z)
     best: Truth | None = None
-    before = bright = None
+    before = uncancelled = None
     why = "too many nodes"
     for step in range(5):
         if s.rotated:
@@ -259,10 +259,10 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
         if not np.all(np.isfinite(p)):
             why = "not finite"
             break
-        if before is None or bright is None:
-            before, bright = p, _bright(s, k, w, kz, p)
+        if before is None or uncancelled is None:
+            before, uncancelled = p, _uncancelled(s, k, w, kz, p)
             continue
-        agreed = _agreement(s, p, before, elsewhere, bright, len(wrong))
+        agreed = _agreement(s, p, before, elsewhere, uncancelled, len(wrong))
         best = agreed if best is None or _worst(agreed) < _worst(best) else best
         before, why = p, f"no two quadratures agree: {_worst(best):.0e} at rtol {case.rtol:.0e}"
         if _worst(best) < max(goal, 1e-13):
@@ -281,14 +281,14 @@ def _agreement(
     p: np.ndarray,
     before: np.ndarray,
     elsewhere: np.ndarray,
-    bright: np.ndarray,
+    uncancelled: np.ndarray,
     wrong: int,
 ) -> Truth:
     """What two quadratures say together."""
     scale = np.maximum(np.abs(p).max(axis=1), elsewhere)
     seen = np.where(scale > SILENT, scale, np.inf)
-    unknown = _cancelled(s, bright, seen)
+    unknown = _cancelled(s, uncancelled, seen)
     error = np.abs(p - before).max(axis=1) / seen + unknown
     dark = unknown > 0.1 * s.case.rtol
-    dark |= (error > 0.1 * s.case.rtol) & (error * scale < 1e-14 * bright)
+    dark |= (error > 0.1 * s.case.rtol) & (error * scale < 1e-14 * uncancelled)
     return Truth(p[:, : s.case.x.size], scale, error, dark, wrong)

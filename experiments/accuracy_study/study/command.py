@@ -39,14 +39,14 @@ def arguments(text: str) -> argparse.Namespace:
 
 
 def chosen(options: argparse.Namespace) -> list[int]:
-    """Numbers of the cases of the classes asked for, and those asked for by number."""
+    """Numbers of the cases of the requested classes, and those requested by number."""
     kinds = KINDS if "all" in (options.kind or []) else options.kind or []
     of_each = (itertools.islice(numbers_of(kind), options.skip, options.skip + options.count) for kind in kinds)
     return [*itertools.chain(*of_each), *(options.case or [])]
 
 
 def main(text: str) -> None:
-    """Run what is asked for and print it."""
+    """Run the requested cases and print them."""
     options = arguments(text)
     if options.terms:
         print(term_table())

@@ -1,4 +1,4 @@
-"""One case judged: the package's answer, its promise, and the truth. All cases, in processes of their own."""
+"""One case compared with the truth: the package's answer, its promise, and the truth. All cases, in processes of their own."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def answer(case: Case, x: np.ndarray, z: np.ndarray, angles: np.ndarray | None) 
 
 
 def compared_with(case: Case, estimate: float) -> tuple[Truth | str, np.ndarray]:
-    """The truth at some of a fine grid's positions, known well enough to judge an estimate; and which positions."""
+    """The truth at some of a fine grid's positions, known well enough to measure an estimate by; and which positions."""
     positions = np.unique(np.linspace(0, case.x.size - 1, 61).round().astype(int))
     own = case.beam.centre + case.beam.reach(1e-3 * case.rtol) * np.linspace(-1, 1, 41)
     with np.errstate(all="ignore"):
@@ -71,7 +71,7 @@ def error_of(p: np.ndarray, reference: Truth) -> tuple[float, float]:
     return float(error[worst]), float(reference.error[worst])
 
 
-def judge(number: int) -> dict[str, Any]:
+def compare_with_truth(number: int) -> dict[str, Any]:
     """One case: the package's answer, its promise, and the truth."""
     case = make_case(number)
     angles = angles_of(number, case)
@@ -104,7 +104,7 @@ def judge(number: int) -> dict[str, Any]:
 def study(numbers: Sequence[int], workers: int = 2) -> xr.Dataset:
     """All cases, in processes of their own."""
     with multiprocessing.get_context("spawn").Pool(workers) as pool:
-        jobs = pool.imap_unordered(judge, numbers)
+        jobs = pool.imap_unordered(compare_with_truth, numbers)
         rows = sorted(tqdm(jobs, total=len(numbers), desc="cases", file=sys.stderr), key=lambda r: r["number"])
     keys = [key for key in rows[0] if key != "number"]
     return xr.Dataset({key: ("case", np.array([r[key] for r in rows])) for key in keys},

@@ -17,34 +17,34 @@ NEEDLESS = 1 / 3
 
 
 def verdicts(ds: xr.Dataset) -> dict[str, np.ndarray]:
-    """Which cases are what; an error counts less what the truth itself may be off, below which it judges no estimate."""
+    """Which cases are what; an error counts less what the truth itself may be off, below which no estimate is too sure."""
     status, warned = ds.status.values, ds.warned.values.astype(bool)
-    judged = status == "answered"
+    compared = status == "answered"
     error = ds.error.values - ds.truth_error.values
     with np.errstate(invalid="ignore"):
         return {
-            "judged": judged,
+            "compared": compared,
             "refused": status == "refused",
             "refused needlessly": (status == "refused") & np.isfinite(ds.truth_error.values),
             "crashed": status == "crashed",
             "without truth": status == "no truth",
             "warned": warned,
-            "warned needlessly": judged
+            "warned needlessly": compared
             & warned
             & (ds.dark.values == 0)
             & (ds.error.values + ds.truth_error.values < NEEDLESS * ds.rtol.values),
-            "broken": judged & (error > ds.rtol.values) & ~warned,
-            "too sure": judged & (error > 3 * np.maximum(ds.estimate.values, ds.truth_error.values)),
+            "broken": compared & (error > ds.rtol.values) & ~warned,
+            "too sure": compared & (error > 3 * np.maximum(ds.estimate.values, ds.truth_error.values)),
         }
 
 
-COLUMNS = ("refused", "refused needlessly", "warned", "warned needlessly", "crashed", "judged", "broken", "too sure")
+COLUMNS = ("refused", "refused needlessly", "warned", "warned needlessly", "crashed", "compared", "broken", "too sure")
 
 
 def class_table(ds: xr.Dataset) -> str:
     """By class, then by source, then all: what the promise was worth."""
     lines = [
-        "| class | cases | refused | needlessly | warned | needlessly | crashed | judged | rtol broken | estimate < error/3 "
+        "| class | cases | refused | needlessly | warned | needlessly | crashed | compared | rtol broken | estimate < error/3 "
         "| median estimate/error | median s |",
         "|---" * 12 + "|",
     ]
@@ -55,10 +55,10 @@ def class_table(ds: xr.Dataset) -> str:
     for name, rows in [*groups, ("all", np.ones(ds.sizes["case"], bool))]:
         if not rows.any():
             continue
-        judged = v["judged"] & rows
-        ratio = ds.estimate.values[judged] / np.maximum(ds.error.values[judged], 1e-17)
+        compared = v["compared"] & rows
+        ratio = ds.estimate.values[compared] / np.maximum(ds.error.values[compared], 1e-17)
         middle = " | ".join(str(c) for c in [int(rows.sum()), *(int((v[key] & rows).sum()) for key in COLUMNS)])
-        median = np.median(ratio) if judged.any() else np.nan
+        median = np.median(ratio) if compared.any() else np.nan
         lines.append(f"| {name} | {middle} | {median:.2g} | {np.nanmedian(ds.seconds.values[rows]):.2g} |")
     return "\n".join(lines)
 
@@ -103,10 +103,10 @@ def faults(ds: xr.Dataset) -> str:
 def plot(ds: xr.Dataset) -> plt.Figure:
     """True error against rtol, and the estimate against the true error."""
     v = verdicts(ds)
-    judged = v["judged"]
+    compared = v["compared"]
     fig, (left, right) = plt.subplots(1, 2, figsize=(13, 6), layout="constrained")
     for i, kind in enumerate(KINDS):
-        rows = judged & (ds.kind.values == kind)
+        rows = compared & (ds.kind.values == kind)
         style: dict[str, Any] = {
             "s": 9,
             "color": plt.get_cmap("tab20")(i % 20),
@@ -116,7 +116,7 @@ def plot(ds: xr.Dataset) -> plt.Figure:
         error = np.maximum(ds.error.values[rows], 1e-17)
         left.scatter(ds.rtol.values[rows], error, **style)
         right.scatter(error, ds.estimate.values[rows], **style)
-    marked = judged & v["warned"]
+    marked = compared & v["warned"]
     left.scatter(
         ds.rtol.values[marked], ds.error.values[marked], s=50, facecolors="none", edgecolors="k", label="warned"
     )
@@ -126,7 +126,7 @@ def plot(ds: xr.Dataset) -> plt.Figure:
     right.plot(span, span / 3, "k--", lw=0.8)
     scales = {"xscale": "log", "yscale": "log"}
     above = "a point above the line must be warned of"
-    left.set(**scales, xlabel="asked rtol", ylabel="true error", title=above)
+    left.set(**scales, xlabel="requested rtol", ylabel="true error", title=above)
     below = "no point below the dashed line, a third"
     right.set(**scales, xlabel="true error", ylabel="error_estimate", title=below, xlim=(1e-17, 2))
     left.legend(fontsize="x-small", loc="upper left", ncols=2)
@@ -136,7 +136,7 @@ def plot(ds: xr.Dataset) -> plt.Figure:
 def statements(ds: xr.Dataset, apart: np.ndarray) -> list[Statement]:
     """The promise, what it costs in needless refusals and warnings, and the limit of vanishing absorption."""
     v = verdicts(ds)
-    share = f"{int(v['judged'].sum())} of {v['judged'].size} cases judged"
+    share = f"{int(v['compared'].sum())} of {v['compared'].size} cases compared"
     rows = []
     for stated, key in (
         ("error above rtol without a warning", "broken"),

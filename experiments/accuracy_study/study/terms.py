@@ -95,14 +95,14 @@ TERMS = [
     Term("rounding of a profile's samples", "contour.error", "terms_by_plane", term_of_budget("samples_rounding"), (CANCELLED,)),
     Term("what lies beyond the band", "contour.error", "_beyond", _nothing_beyond, tuple(cones())),
     Term("a spectrum that is cut off", "contour.error", "terms_by_plane", term_of_budget("cut_spectrum"), tuple(coarse_profiles())),
-    Term("mixing of angles", "contour.error", "terms_by_plane", term_of_budget("angle_interpolation"), (MIXED,)),
+    Term("interpolation over angles", "contour.error", "terms_by_plane", term_of_budget("angle_interpolation"), (MIXED,)),
     Term("planes made of a few", "fields.evaluate", "_fill_low_rank", _no_low_rank, tuple(range(1, 600, 5))),
     Term("rounding of long phases", "contour.error", "terms_by_plane", term_of_budget("long_phases"), tuple(tilted_plateaus())),
     Term(
         "second response moved in its last bits", "contour.error", "sampled", _not_moved,
         (*first_numbers("sharp resonances", 20), *first_numbers("LMMD, 1 or 100 000 periods", 20)),
     ),
-    Term("brightness outside the window", "contour.error", "_largest", _no_peaks_outside, (FAR,), False),
+    Term("peaks outside the window", "contour.error", "_largest", _no_peaks_outside, (FAR,), False),
     Term("planes too dark to be seen", "contour.error", "DARK", lambda _: -1.0, (SHADOW, BLACK), False),
     Term("planes dark to rounding", "contour.error", "with_dark_planes", _none_dark, (WALL,), False),
 ]  # fmt: skip
@@ -131,7 +131,7 @@ class Evidence(NamedTuple):
 
 
 class _Question(NamedTuple):
-    """A case, and what is asked for with it."""
+    """A case, and what is requested with it."""
 
     case: Case
     x: np.ndarray
