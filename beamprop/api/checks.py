@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import memory, validate
 from ..media.fluids import Fluid
-from ..media.hints import HintWarning
-from ..media.structures import UNSTATED, Layer, Slab
-from ..sources.base import Beam, sin_degrees
+from ..media.structures import Slab
+from ..sources.base import Beam, moved_to_origin, sin_degrees
+from . import hints
+
+if TYPE_CHECKING:
+    from ..contour.error import ErrorBudget
+    from ..profiles.power import PowerError
 
 
 class AccuracyWarning(UserWarning):
-    """An answer whose estimated error is above the asked rtol.
+    """An answer whose estimated error is above the requested rtol.
 
     Examples
     --------
@@ -27,22 +31,45 @@ class AccuracyWarning(UserWarning):
     """
 
 
-def warn_if_inaccurate(
-    error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|", mostly: str = ""
-) -> None:
-    """Warn of an estimated error above rtol; `mostly` names its largest term where it is known."""
-    if error > rtol:
-        term = f", mostly: {mostly}" if mostly else ""
+def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "the largest |p|") -> None:
+    """Warn of an estimated error above rtol, with its largest term."""
+    total = float(np.max(error.total))
+    if total > rtol:
         warnings.warn(
-            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}{term}",
+            f"estimated error {total:.1e} of {of}, above the requested rtol {rtol:.1e}, mostly: {error.largest}",
             AccuracyWarning,
-            stacklevel=stacklevel,
+            stacklevel=3,
         )
 
 
-def angles(angle: Any, beam: Beam) -> np.ndarray:
-    """The asked angles of a beam [degree], its own by default."""
-    return validate.angles(beam.angle if angle is None else angle)
+class Beams(NamedTuple):
+    """What questions about beams share: checked arguments, axes as they were given (scalars stay scalars)."""
+
+    frequency: np.ndarray  #: Hz
+    angle: np.ndarray  #: degree, the beam's own by default
+    rtol: float
+    source: Beam  #: the beam, moved to the origin
+    origin: float  #: its place before [m]
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """frequency and angle."""
+        return {"frequency": self.frequency, "angle": self.angle}
+
+    @property
+    def flat(self) -> tuple[np.ndarray, np.ndarray]:
+        """frequency (F,) and angle (A,)."""
+        return np.atleast_1d(self.frequency), np.atleast_1d(self.angle)
+
+
+def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
+    """The arguments of a question about beams, or a ValueError that names the wrong one."""
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles = validate.angles(beam.angle if angle is None else angle)
+    hints.warn_of_air(slab, f)
+    return Beams(f, angles, validate.rtol(rtol), *moved_to_origin(beam))
 
 
 def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:
@@ -58,8 +85,8 @@ def forward_k0(fluid: Fluid, frequency: np.ndarray, name: str) -> np.ndarray:
     return k.real
 
 
-def one_of(**options: Any) -> tuple[str, Any]:
-    """The one option that is given."""
+def single_option(**options: Any) -> tuple[str, Any]:
+    """The option that is given, by name and value."""
     given = {name: value for name, value in options.items() if value is not None}
     if len(given) != 1:
         raise ValueError(f"expected exactly one of {', '.join(options)}, got {', '.join(given) or 'none'}")
@@ -69,7 +96,7 @@ def one_of(**options: Any) -> tuple[str, Any]:
 def lateral(
     name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+    """The requested axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
 
     `bytes_each` is what the answer to one plane wave holds.
     """
@@ -97,7 +124,18 @@ def coords(**axes: np.ndarray) -> dict[str, tuple[tuple[str, ...], Any]]:
     return {n: ((n,) if a.ndim else (), a) for n, a in axes.items()}
 
 
-#: Relative errors of plane waves from which on a warning is due.
+def warn_of_crossings(most: int, names: str = "") -> None:
+    """Warn where |p| crosses the half level more than twice: which of its places a width lies between."""
+    if most > 2:
+        where = f": {names}" if names else ""
+        warnings.warn(
+            f"the half level is met up to {most} times; widths are between the two places nearest to the peak{where}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
+#: Relative errors of plane waves from which on a warning is due: six digits, more than media are known to.
 WORTH_A_WARNING = 1e-6
 
 
@@ -112,34 +150,3 @@ def warn_of_plane_waves(error: np.ndarray, frequency: np.ndarray, name: str, axi
             AccuracyWarning,
             stacklevel=3,
         )
-
-
-#: Ultrasound: where a half-space of air behind water reflects all, and who asks has seldom meant it [Hz].
-ULTRASOUND = 20e3
-#: Density [kg/m3] and sound speed [m/s] of water and what is like it.
-WATER_LIKE = ((850.0, 1200.0), (1300.0, 1700.0))
-
-
-def warn_of_air(slab: Slab, frequency: np.ndarray, stacklevel: int = 3) -> None:
-    """A hint that both half-spaces are air because none was given, around water at ultrasonic frequencies."""
-    if slab.before is not UNSTATED or slab.after is not UNSTATED or np.max(frequency) < ULTRASOUND:
-        return
-    faces = slab.segments[0][0].layers[0], slab.segments[-1][0].layers[-1]
-    if all(isinstance(layer, Layer) and _is_like_water(layer.fluid, frequency) for layer in faces):
-        said = "before, after: air, for none was given, around layers like water; background= sets both (bp.AIR if it is meant)"
-        warnings.warn(said, HintWarning, stacklevel=stacklevel)
-
-
-def _is_like_water(fluid: Fluid, frequency: np.ndarray) -> bool:
-    values = fluid.at(np.max(frequency))
-    density, speed = abs(complex(values.rho_z)), abs(complex(values.bulk_modulus / values.rho_z)) ** 0.5
-    return all(least <= v <= most for v, (least, most) in zip((density, speed), WATER_LIKE, strict=True))
-
-
-def warn_of_width(slab: Slab, beam: Beam, frequency: np.ndarray, x: np.ndarray) -> None:
-    """A hint that a beam of many wavelengths does not fit into the grid that its field is asked on."""
-    fwhm, span = getattr(beam, "fwhm", 0.0), float(np.ptp(x))
-    wavelengths = fwhm * float(np.max(np.abs(slab.before.wavenumber(np.max(frequency))))) / (2 * np.pi)
-    if fwhm >= 1 and x.size >= 100 and fwhm > 2 * span and 20 < wavelengths < np.inf:
-        said = f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and x spans {span:g} m: is it in metres?"
-        warnings.warn(said, HintWarning, stacklevel=4)

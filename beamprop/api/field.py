@@ -13,7 +13,8 @@ from ..fields.question import fill, prepare
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from .field_question import checked_question, labelled, warn_of_field
+from . import checks
+from .field_question import checked_question, labelled
 
 
 def field(
@@ -45,7 +46,7 @@ def field(
     period : float, m
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
-        Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
+        Requested error of the open field over the largest |p| of each plane, wherever on the plane that lies.
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of frequencies that is worked through.
 
@@ -82,5 +83,5 @@ def field(
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
         budget = fill(prepare(question, i), slice(None), slice(None), p[i])
         errors[i], worst = budget.total, worst.worse(budget)
-    warn_of_field(worst, question.rtol)
+    checks.warn_if_inaccurate(worst, question.rtol)
     return labelled(labels, errors, p)

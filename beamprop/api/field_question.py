@@ -9,12 +9,11 @@ import xarray as xr
 
 from .. import validate
 from ..contour import sums
-from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
-from ..sources.base import Beam, moved_to_origin
-from . import checks
+from ..sources.base import Beam
+from . import checks, hints
 
 
 class Labels(NamedTuple):
@@ -42,29 +41,20 @@ def checked_question(
     slab: Slab, beam: Beam, frequency: Any, x: Any, z: Any, angle: Any, boundary: str, period: float | None, rtol: float
 ) -> tuple[FieldQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument."""
-    validate.instance(slab, Slab, "slab")
-    validate.instance(beam, Beam, "beam")
-    f, xs, zs = validate.axis(frequency, "frequency", positive=True), validate.axis(x, "x"), validate.axis(z, "z")
-    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
+    xs, zs = validate.axis(x, "x"), validate.axis(z, "z")
     validate.word(boundary, "boundary", "open", "periodic")
     if np.min(zs) < beam.z0:
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
-    checks.warn_of_air(slab, f, stacklevel=4)
-    checks.warn_of_width(slab, beam, f, xs)
-    axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
-    flat_f, flat_angles, flat_z, positions = (np.atleast_1d(v) for v in axes.values())
-    source, origin = moved_to_origin(beam)
+    hints.warn_of_width(slab, beam, beams.frequency, xs)
+    frequencies, angles = beams.flat
+    positions = np.atleast_1d(xs) - beams.origin
     if boundary == "periodic":
-        period = _period(period, positions - origin, source, slab, flat_f)
+        period = _period(period, positions, beams.source, slab, frequencies)
     elif period is not None:
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
-    question = FieldQuestion(slab, source, flat_f, flat_angles, flat_z, positions - origin, period, rtol)
-    return question, Labels(axes, slab, beam, boundary, period, rtol)
-
-
-def warn_of_field(worst: ErrorBudget, rtol: float) -> None:
-    """Warn of the error of a field's worst beam, with its largest term, if it is above rtol."""
-    checks.warn_if_inaccurate(float(worst.total[0]), rtol, stacklevel=4, mostly=worst.largest)
+    question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
+    return question, Labels(beams.axes | {"z": zs, "x": xs}, slab, beam, boundary, period, beams.rtol)
 
 
 def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:
@@ -72,8 +62,8 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
     dims, pick = labels.dims, labels.pick
     variables: dict[str, Any] = {} if p is None else {"p": (dims, p[pick])}
     if labels.boundary == "open":
-        few = tuple(d for d in dims if d in ("frequency", "angle"))
-        variables["error_estimate"] = (few, errors[pick[:2]])
+        by_beam = tuple(d for d in dims if d in ("frequency", "angle"))
+        variables["error_estimate"] = (by_beam, errors[pick[:2]])
     ds = datasets.make(
         variables,
         checks.coords(**labels.axes),

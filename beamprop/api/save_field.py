@@ -18,9 +18,10 @@ from ..media.structures import Slab
 from ..memory import check_field
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from .field_question import checked_question, labelled, warn_of_field
+from . import checks
+from .field_question import checked_question, labelled
 
-#: The largest chunk of a file [bytes].
+#: The largest chunk of a file [bytes]: 16 MB, what a reader holds for one value of it, and what compresses at a time.
 CHUNK = 2**24
 #: Of a complex number [bytes].
 SIZE = 16
@@ -113,7 +114,7 @@ def save_field(
     sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
     chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
     save_blocks(path, "p", sizes, chunks, blocks(), lambda: labelled(labels, errors, None))
-    warn_of_field(worst, question.rtol)
+    checks.warn_if_inaccurate(worst, question.rtol)
     return labelled(labels, errors, None)
 
 
@@ -122,6 +123,6 @@ def _block(shape: tuple[int, ...], memory: float) -> tuple[tuple[int, int], tupl
     _, angles, planes, points = shape
     row = SIZE * points
     many = max(1, min(angles, int(memory // row)))
-    few = max(1, min(planes, int(memory // (row * many))))
-    chunk = max(1, min(few, int(CHUNK // (row * many))))
-    return (many, few // chunk * chunk), (many, chunk)
+    held = max(1, min(planes, int(memory // (row * many))))
+    chunk = max(1, min(held, int(CHUNK // (row * many))))
+    return (many, held // chunk * chunk), (many, chunk)

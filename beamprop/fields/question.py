@@ -66,7 +66,8 @@ def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> E
     """
     question, s, beams, quadrature = prepared
     transfer, taken = transfer_function.through(s, question.source.z0), beams.taken(angles)
-    added = evaluate.fill_map(s, taken, quadrature, transfer, question.z[planes], question.x, out, question.rtol)
+    waves = evaluate.Superposition(s.k0, taken, quadrature, question.x)
+    low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
     if question.period is not None:
-        return uniform_budget(added.size, np.nan)
-    return quadrature.budget.taken(angles)._replace(low_rank=added)
+        return uniform_budget(low_rank.size, np.nan)
+    return quadrature.budget.taken(angles)._replace(low_rank=low_rank)
