@@ -31,19 +31,37 @@ if TYPE_CHECKING:
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
     from .io.storage import load, save
-    from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
+    from .media.attenuation import power_law
+    from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt, wood_mixture
     from .media.fluids import AIR, Fluid
+    from .media.hints import HintWarning
     from .media.lmmd import lmmd_cell
-    from .media.structures import Cell, Layer, Membrane, Slab
+    from .media.materials import material, materials
+    from .media.membranes import Membrane
+    from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
+    from .media.properties import Tabulated
+    from .media.structures import Cell, Layer, Slab
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
 
 _HOMES = {
+    "media.attenuation": ("power_law",),
     "media.fluids": ("AIR", "Fluid"),
-    "media.structures": ("Cell", "Layer", "Membrane", "Slab"),
+    "media.hints": ("HintWarning",),
+    "media.materials": ("material", "materials"),
+    "media.porous": (
+        "Gas",
+        "delany_bazley_miki",
+        "johnson_champoux_allard",
+        "narrow_slits",
+        "narrow_tubes",
+    ),
+    "media.properties": ("Tabulated",),
+    "media.membranes": ("Membrane",),
+    "media.structures": ("Cell", "Layer", "Slab"),
     "media.lmmd": ("lmmd_cell",),
-    "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt"),
+    "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
     "sources.gaussian": ("GaussianBeam",),
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
@@ -69,26 +87,36 @@ __all__ = [
     "AccuracyWarning",
     "Cell",
     "Fluid",
+    "Gas",
     "GaussianBeam",
+    "HintWarning",
     "Layer",
     "Membrane",
     "Profile",
     "Slab",
     "Slits",
+    "Tabulated",
     "__version__",
     "beam_measures",
     "beam_width",
     "bloch",
     "compare",
+    "delany_bazley_miki",
     "fem",
     "field",
     "fwhm",
     "guided_modes",
+    "johnson_champoux_allard",
     "lmmd_cell",
     "lmmd_emt",
     "lmmd_emt_slab",
     "load",
+    "material",
+    "materials",
+    "narrow_slits",
+    "narrow_tubes",
     "plot",
+    "power_law",
     "provenance",
     "read_comsol",
     "save",
@@ -96,6 +124,7 @@ __all__ = [
     "scattering",
     "standard_emt",
     "to_grid",
+    "wood_mixture",
 ]
 
 

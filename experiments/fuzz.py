@@ -47,7 +47,7 @@ NAMED = re.compile(r"[\w.]+( of [\w.]+)?(, [\w. ]+)*: |expected exactly one of |
 #: Outcomes that are as they should be.
 GOOD = ("answer", "answer with a warning", "ValueError", "OSError of a file")
 #: Functions that read or write files, which the system may refuse.
-FILES = ("Profile.from_file", "load", "read_comsol", "save", "save_field")
+FILES = ("Profile.from_file", "Slab.from_table", "load", "read_comsol", "save", "save_field")
 #: Functions whose answer repeats a NaN that they are given, or has one where a given field is zero.
 GIVEN = ("compare", "fwhm", "load", "save")
 

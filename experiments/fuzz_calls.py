@@ -25,6 +25,7 @@ from fuzz_cases import (
     pick,
     real,
 )
+from fuzz_media import MEDIA_CALLS
 
 import beamprop as bp
 
@@ -170,6 +171,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         },
         {"order": lambda r: 1, "elements_x": lambda r: 9, "memory_limit": lambda r: 1e8},
     ),
+    **MEDIA_CALLS,
 }
 
 

@@ -60,7 +60,7 @@ STRUCTURES = [
     *[("sound_speed", lambda v=v: bp.Fluid.from_speed(1.2, v)) for v in (0, NAN, INF, "a")],
     ("density", lambda: bp.Fluid.from_speed(NAN, 343.0)),
     ("fluid", lambda: bp.Layer(1.25, 0.1)),
-    *[("layers", lambda v=v: bp.Cell(v)) for v in ([], 3, [3], [LAYER, 3], [bp.AIR], [bp.Membrane(1.0)])],
+    *[("layers", lambda v=v: bp.Cell(v)) for v in ([], 3, [3], [LAYER, 3], [bp.AIR])],
     *[("areal_density", lambda v=v: bp.Membrane(v)) for v in (NAN, INF, -1j, "a")],
     *[("periods", lambda v=v: bp.Slab([LAYER], v)) for v in (0, -1, 1.5, NAN, INF, "a", None, True)],
     *[("cell", lambda v=v: bp.Slab(v)) for v in (3, None, bp.AIR)],
@@ -76,7 +76,13 @@ STRUCTURES = [
     *[("design_frequency", cell(design_frequency=v)) for v in (0, NAN)],
     *[("background", cell(background=v)) for v in (3, bp.Fluid(-1, 1e5))],
     ("rho_m", cell(rho_m="a")),
-    ("density", cell(rho_m=0.05, delta_rho=0.025)),  # gain in the layers of small loss
+    ("rho_m, delta_rho", cell(rho_m=0.05, delta_rho=0.025)),  # gain in the layers of small loss
+    ("lossless", cell(lossless=1)),
+    ("eta", cell(eta=1e60)),
+    ("sound_speed", lambda: bp.Fluid.from_speed(1.2, 343 + 1j)),
+    ("background", lambda: bp.Slab([LAYER], background=3)),
+    ("slab", lambda: bp.fem.field(bp.Slab.interface(), BEAM, F, X[:-1], [0.1], 1.2)),
+    ("cell", lambda: bp.bloch(bp.Cell(bp.Membrane(1.0)), F, kx=0)),
     ("cell", lambda: bp.standard_emt(bp.Cell([bp.Layer(bp.Fluid(0, 1e5), 0.1)]))),
     ("cell", lambda: bp.lmmd_emt(bp.Cell([LAYER, bp.Membrane(1.0)]))),
     ("density", fluid(density=None)),

@@ -8,7 +8,7 @@ import pytest
 
 import beamprop as bp
 from beamprop.conventions import branch_wavenumber, outgoing_kz
-from beamprop.media.effective import Tabulated
+from beamprop.media.properties import Tabulated
 from beamprop.response.sampled_slab import sample, sample_all
 
 RHO, C = 1.25, 343.0

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import click
+import materials
 import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
@@ -181,7 +182,7 @@ def test_scripts_that_are_called_exist():
 # --- tables -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["accuracy", "limit", "statements", "benchmarks", "shares", "steps"])
+@pytest.mark.parametrize("name", ["accuracy", "limit", "statements", "benchmarks", "shares", "steps", "materials"])
 def test_tables_are_filled_by_their_name(name, tmp_path):
     """Each table has one place; what is written there is the table, and nothing else of any page changes."""
     before = {page.name: page.read_text(encoding="utf-8") for page in (CHECKOUT / "docs").glob("*.md")}
@@ -196,6 +197,12 @@ def test_tables_are_filled_by_their_name(name, tmp_path):
     head, _, rest = text.partition(mark)
     _, end, tail = rest.partition("<!-- end -->")
     assert (tmp_path / file).read_text(encoding="utf-8") == head + mark + "| \\1 | new |\n" + end + tail
+
+
+def test_the_table_of_materials_is_the_one_that_is_printed():
+    """As experiments/materials.py prints it, to the last digit."""
+    text = (CHECKOUT / "docs" / "media.md").read_text(encoding="utf-8")
+    assert f"<!-- table:materials -->\n{materials.table()}\n<!-- end -->" in text
 
 
 def test_a_table_without_a_place_is_refused(tmp_path):

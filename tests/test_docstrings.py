@@ -14,6 +14,13 @@ import beamprop as bp
 PUBLIC = {name: getattr(bp, name) for name in bp.__all__ if callable(getattr(bp, name))}
 PUBLIC |= {f"fem.{name}": getattr(bp.fem, name) for name in ("field", "plan")}
 PUBLIC |= {f"plot.{name}": getattr(bp.plot, name) for name in ("bloch", "comparison", "field", "scattering", "width")}
+PUBLIC |= {
+    "Fluid.from_speed": bp.Fluid.from_speed,
+    "Membrane.drude": bp.Membrane.drude,
+    "Membrane.lorentz": bp.Membrane.lorentz,
+    "Slab.from_table": bp.Slab.from_table,
+    "Slab.interface": bp.Slab.interface,
+}
 
 
 @pytest.fixture

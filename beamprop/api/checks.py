@@ -11,6 +11,7 @@ from .. import memory, validate
 from ..media.fluids import Fluid
 from ..media.structures import Slab
 from ..sources.base import Beam, moved_to_origin, sin_degrees
+from . import hints
 
 if TYPE_CHECKING:
     from ..contour.error import ErrorBudget
@@ -67,6 +68,7 @@ def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Be
     validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
+    hints.warn_of_air(slab, f)
     return Beams(f, angles, validate.rtol(rtol), *moved_to_origin(beam))
 
 

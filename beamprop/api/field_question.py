@@ -13,7 +13,7 @@ from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
 from ..sources.base import Beam
-from . import checks
+from . import checks, hints
 
 
 class Labels(NamedTuple):
@@ -46,6 +46,7 @@ def checked_question(
     validate.word(boundary, "boundary", "open", "periodic")
     if np.min(zs) < beam.z0:
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+    hints.warn_of_width(slab, beam, beams.frequency, xs)
     frequencies, angles = beams.flat
     positions = np.atleast_1d(xs) - beams.origin
     if boundary == "periodic":

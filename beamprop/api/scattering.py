@@ -14,7 +14,7 @@ from ..conventions import outgoing_kz
 from ..io import datasets
 from ..media.structures import Slab
 from ..media.values import materials, slab_values
-from . import checks
+from . import checks, hints
 
 
 def scattering(
@@ -69,6 +69,7 @@ def scattering(
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
+    hints.warn_of_air(slab, f)
     name, value = checks.single_option(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)

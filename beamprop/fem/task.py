@@ -56,6 +56,8 @@ class Task:
 
 def _check(slab: Any, beam: Any, frequency: Any, period: Any, order: Any, method: Any) -> tuple[float, float, int]:
     validate.instance(slab, Slab, "slab")
+    if slab.thickness == 0:
+        raise ValueError("slab: expected a layer to divide into elements, got a slab of thickness 0")
     validate.instance(beam, Beam, "beam")
     validate.word(method, "method", *solvers.SOLVERS)
     order = as_count(order, "order")

@@ -17,9 +17,11 @@ import xarray as xr
 
 from .. import validate
 from .._version import __version__
-from ..media import effective as _homogenize
+from ..media import air, attenuation, effective, membranes, porous
 from ..media.fluids import Fluid
-from ..media.structures import Cell, Layer, Membrane, Slab
+from ..media.membranes import Membrane
+from ..media.properties import Tabulated
+from ..media.structures import Cell, Layer, Slab
 from ..sources.base import Beam
 from ..sources.gaussian import GaussianBeam
 from ..sources.profile import Profile
@@ -38,7 +40,12 @@ _RECORDS: dict[str, type] = {
         GaussianBeam,
         Profile,
         Slits,
-        *_homogenize.FUNCTIONS,
+        Tabulated,
+        *effective.FUNCTIONS,
+        *attenuation.FUNCTIONS,
+        *air.FUNCTIONS,
+        *membranes.FUNCTIONS,
+        *porous.FUNCTIONS,
     )
 }
 
@@ -68,7 +75,7 @@ def describe(value: Any, frequency: np.ndarray) -> Any:
         return _number(float(value))
     if callable(value):
         f = np.unique(frequency)
-        return describe(_homogenize.Tabulated(tuple(f), tuple(np.asarray(value(f), complex))), frequency)
+        return describe(Tabulated(f, np.asarray(value(f), complex)), frequency)
     if isinstance(value, Beam):  # a source of the user's own, which no file can bring back
         return {"source": f"{kind.__module__}.{kind.__qualname__}", "text": repr(value)[:MOST_TEXT]}
     raise TypeError(f"no record for {type(value).__name__}")

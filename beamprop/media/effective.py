@@ -23,23 +23,6 @@ from .fluids import Fluid, FluidValues
 from .structures import Cell, Layer, Membrane, Slab
 
 
-@dataclass(frozen=True)
-class Tabulated:
-    """A property tabulated at real frequencies [Hz]: linear between them, refused outside."""
-
-    frequency: tuple[float, ...]
-    values: tuple[complex, ...]
-
-    def __call__(self, frequency: np.ndarray) -> np.ndarray:
-        f, known = real_or_complex(frequency), np.asarray(self.frequency)
-        if np.iscomplexobj(f):
-            raise validate.refuse("frequency", "real frequencies of a tabulated medium", f)
-        if np.any((f < known[0]) | (f > known[-1])):
-            raise ValueError(f"frequency: this medium is known from {known[0]} to {known[-1]} Hz only, got {f}")
-        values = np.asarray(self.values)
-        return np.interp(f, known, values.real) + 1j * np.interp(f, known, values.imag)
-
-
 def _layers(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, list[FluidValues]]:
     validate.instance(cell, Cell, "cell")
     layers = [layer for layer in cell.layers if isinstance(layer, Layer)]
@@ -107,7 +90,7 @@ class LmmdJump:
 
 
 #: The functions of frequency made here: a file records them by their cell, not as a table.
-FUNCTIONS: tuple[type, ...] = (Tabulated, CellMean, LmmdDensity, LmmdJump)
+FUNCTIONS: tuple[type, ...] = (CellMean, LmmdDensity, LmmdJump)
 
 
 def _simplify(cell: Cell, function: Any) -> Any:
@@ -135,6 +118,45 @@ def standard_emt(cell: Cell) -> Fluid:
         _simplify(cell, CellMean(cell, "rho_z")),
         _simplify(cell, CellMean(cell, "bulk_modulus", inverse=True)),
         _simplify(cell, CellMean(cell, "rho_x", inverse=True)),
+    )
+
+
+def wood_mixture(*parts: tuple[Fluid, float]) -> Fluid:
+    """A mixture much finer than the wavelength, such as bubbles in water: ``rho = <rho>``, ``1/K = <1/K>``.
+
+    Parameters
+    ----------
+    parts : pairs of Fluid and float
+        Each isotropic, with its share of the volume; the shares add up to 1.
+
+    Raises
+    ------
+    ValueError
+        Names the part that is wrong, or the sum of the shares.
+
+    Source: A. B. Wood, A Textbook of Sound (1930). Bubbles do not resonate in it, so that it holds far below their resonance.
+
+    Examples
+    --------
+    >>> water = bp.material("water")
+    >>> bubbly = bp.wood_mixture((water, 0.99), (bp.AIR, 0.01))
+    >>> round(float(2 * np.pi * 100 / bubbly.wavenumber(100.0).real), 1)  # m/s, far below that of both
+    121.6
+    """
+    layers = []
+    for part in parts:
+        if not (isinstance(part, tuple) and len(part) == 2):
+            raise validate.refuse("parts", "pairs (Fluid, share of the volume)", part)
+        validate.instance(part[0], Fluid, "parts")
+        if part[0].density_x is not None:
+            raise ValueError(f"parts: expected isotropic fluids, got {part[0]!r}")
+        layers.append(Layer(part[0], validate.as_number(part[1], "parts", positive=True)))
+    total = sum(layer.thickness for layer in layers)
+    if abs(total - 1) > 1e-9:
+        raise ValueError(f"parts: expected shares of the volume that add up to 1, got {total:g}")
+    cell = Cell(tuple(layers))
+    return Fluid(
+        _simplify(cell, CellMean(cell, "rho_z")), _simplify(cell, CellMean(cell, "bulk_modulus", inverse=True))
     )
 
 

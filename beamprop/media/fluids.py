@@ -1,8 +1,7 @@
-"""Fluids: density and bulk modulus, as numbers or functions of frequency, checked when they are made or evaluated."""
+"""Fluids: density and bulk modulus, checked when they are made or evaluated."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -11,40 +10,9 @@ import numpy as np
 from .. import validate
 from ..conventions import branch_wavenumber, real_or_complex
 from ..validate import as_complex
-
-Property = complex | Callable[[np.ndarray], np.ndarray]
-
-
-def check_property(
-    values: Any, name: str, *, gain_sign: int, active: bool, infinite: bool = False, zero: bool = True
-) -> None:
-    """Refuse NaN, infinity and zero (unless legitimate), gain, and what double precision cannot compute with."""
-    values = np.atleast_1d(np.asarray(values, dtype=complex))
-    allowed = np.isfinite(values) | (np.isinf(values) if infinite else False)
-    if not np.all(allowed):
-        raise ValueError(f"{name}: expected finite values, got {values[~allowed][0]}")
-    if not zero and np.any(values == 0):
-        raise ValueError(f"{name}: expected a value other than zero, got 0")
-    validate.within(values[values != 0], name)
-    gain = np.isfinite(values) & (gain_sign * values.imag < 0)
-    if not active and np.any(gain):
-        relation = ">= 0" if gain_sign > 0 else "<= 0"
-        raise ValueError(
-            f"{name}: expected a passive medium, Im({name}) {relation} with exp(-i w t), got {values[gain][0]}; "
-            "pass active=True for a medium with gain"
-        )
-
-
-def property_values(prop: Property, frequency: np.ndarray, name: str) -> np.ndarray:
-    """A property at real or complex frequencies [Hz], as complex numbers of their shape; a function gets a copy, to overwrite."""
-    if not callable(prop):
-        return np.full(frequency.shape, prop, dtype=complex)
-    out = validate.numeric(prop(frequency.copy()), name, "a function that returns numbers").astype(complex)
-    if out.shape != frequency.shape:
-        raise ValueError(
-            f"{name}: expected a function that returns an array of shape {frequency.shape}, got {out.shape}"
-        )
-    return out
+from .attenuation import Attenuation, LossyModulus
+from .hints import warn_of_modulus
+from .properties import Property, check_property, property_values
 
 
 class FluidValues(NamedTuple):
@@ -102,6 +70,8 @@ class Fluid:
             if (v := getattr(self, n)) is not None and not callable(v)
         }
         self._check(self.active, **numbers)
+        if self.density_x is None:
+            warn_of_modulus(self.density, self.bulk_modulus)
 
     def _check(self, active: bool, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:
         if density is not None:
@@ -114,8 +84,33 @@ class Fluid:
                 raise ValueError("density_x: zero beside a density that is given apart has no finite limit, got 0")
 
     @classmethod
-    def from_speed(cls, density: complex, sound_speed: complex, *, active: bool = False) -> Fluid:
-        """A fluid by its density [kg/m3] and speed of sound [m/s]: bulk modulus ``density * sound_speed**2``."""
+    def from_speed(
+        cls, density: complex, sound_speed: complex, attenuation: Attenuation = 0.0, *, active: bool = False
+    ) -> Fluid:
+        """A fluid by its density, speed of sound and attenuation.
+
+        Parameters
+        ----------
+        density : complex, kg/m3
+        sound_speed : complex, m/s
+            Phase velocity; real, like the density, beside an attenuation.
+        attenuation : float, or function of frequency; Np/m
+            Of the pressure, as exp(-attenuation x): at every frequency the same, or `power_law`, a `Tabulated` or any
+            function of the frequency [Hz]. The bulk modulus is ``density w^2 / (w/sound_speed + i attenuation)^2``.
+        active : bool
+            Allow gain.
+
+        Raises
+        ------
+        ValueError
+            Zero, NaN or infinite values, gain, and complex numbers beside an attenuation.
+
+        Examples
+        --------
+        >>> gel = bp.Fluid.from_speed(1020.0, 1510.0, attenuation=5.0)
+        >>> float(gel.wavenumber(1e6).imag.round(9))
+        5.0
+        """
         rho, c = as_complex(density, "density"), as_complex(sound_speed, "sound_speed")
         if not (np.isfinite(rho) and rho != 0):
             raise ValueError(f"density: expected a finite number other than zero beside a speed, got {density!r}")
@@ -123,6 +118,15 @@ class Fluid:
             raise ValueError(f"sound_speed: expected a finite number other than zero, got {sound_speed!r}")
         for name, value in (("density", rho), ("sound_speed", c), ("sound_speed", rho * c * c)):
             validate.within(value, name)
+        active = validate.flag(active, "active")
+        if callable(attenuation) or validate.as_number(attenuation, "attenuation") != 0:
+            return cls(rho, _lossy_modulus(rho, c, attenuation, active), active=active)
+        if not active and (rho * c * c).imag > 0 and rho.imag >= 0:
+            raise ValueError(
+                f"{'density' if rho.imag else 'sound_speed'}: expected a passive medium, Im(bulk_modulus) <= 0 with exp(-i w t) "
+                f"and bulk_modulus = density * sound_speed^2, got {density if rho.imag else sound_speed!r}; "
+                "pass active=True for a medium with gain"
+            )
         return cls(rho, rho * c * c, active=active)
 
     @property
@@ -159,6 +163,19 @@ class Fluid:
 
         along_x = "" if self.density_x is None else f", density_x={show(self.density_x)}"
         return f"Fluid(density={show(self.density)}, bulk_modulus={show(self.bulk_modulus)}{along_x})"
+
+
+def _lossy_modulus(density: complex, sound_speed: complex, attenuation: Attenuation, active: bool) -> LossyModulus:
+    """The bulk modulus of a fluid with attenuation, its numbers checked."""
+    for name, value in (("density", density), ("sound_speed", sound_speed)):
+        if value.imag != 0 or value.real <= 0:
+            raise validate.refuse(name, "a real number above zero beside an attenuation", value)
+    if not callable(attenuation):
+        attenuation = validate.as_number(attenuation, "attenuation")
+        if attenuation < 0 and not active:
+            expected = "at least 0 Np/m (active=True allows gain)"
+            raise validate.refuse("attenuation", expected, attenuation)
+    return LossyModulus(density.real, sound_speed.real, attenuation, active)
 
 
 #: Air as in the paper: 1.25 kg/m3, 343 m/s.

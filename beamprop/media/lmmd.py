@@ -9,6 +9,7 @@ import numpy as np
 from .. import memory, validate
 from ..validate import as_complex, as_count, as_number
 from .fluids import AIR, Fluid
+from .hints import warn_of_eta
 from .structures import Cell, Layer
 
 
@@ -19,6 +20,7 @@ def lmmd_cell(
     eta: float = 1 / 60,
     design_frequency: float = 2500.0,
     background: Fluid = AIR,
+    lossless: bool = False,
 ) -> Cell:
     """One period of the rapidly modulated medium of large modulation depth, the paper's Eq. (10).
 
@@ -38,10 +40,18 @@ def lmmd_cell(
     design_frequency : float, Hz
     background : Fluid
         Isotropic; evaluated at `design_frequency` if it is dispersive.
+    lossless : bool
+        Take the real part of `rho_m` and no `delta_rho`.
+
+    Raises
+    ------
+    ValueError
+        Names the argument; a layer with gain is the fault of ``rho_m, delta_rho``: Im(rho_m) has to be as large as
+        \\|delta_rho\\|.
 
     Examples
     --------
-    >>> cell = bp.lmmd_cell(0.05, 0)  # without loss
+    >>> cell = bp.lmmd_cell(lossless=True)
     >>> [round(layer.fluid.density.real / 1.25, 2) for layer in cell.layers][:3]
     [60.05, 48.59, 18.59]
     """
@@ -54,6 +64,8 @@ def lmmd_cell(
     if not np.isfinite(rho_m):
         raise ValueError(f"rho_m: expected a finite number, got {rho_m}")
     validate.within(rho_m, "rho_m", zero=True)
+    if validate.flag(lossless, "lossless"):
+        rho_m, delta_rho = complex(rho_m.real), 0.0
     validate.instance(background, Fluid, "background")
     values = background.at(design_frequency)
     k0 = float(background.wavenumber(design_frequency).real)
@@ -62,5 +74,13 @@ def lmmd_cell(
     cosine = np.cos(2 * np.pi * np.arange(n_layers) / n_layers)
     cosine[np.abs(cosine) < 1e-15] = 0.0  # cos(pi/2): exactly zero, as in the formula
     density = complex(values.rho_z) * (rho_m + (1 / eta + 1j * delta_rho) * cosine)
+    if np.any(density.imag < 0):
+        raise ValueError(
+            "rho_m, delta_rho: expected a passive medium, Im(density) >= 0 in every layer and so Im(rho_m) >= |delta_rho|, "
+            f"got {rho_m:.6g} and {delta_rho:.6g}; lossless=True drops both losses"
+        )
+    validate.within(density[density != 0], "rho_m, delta_rho, eta")
     thickness = eta * 2 * np.pi / k0 / n_layers
+    validate.within(thickness, "eta")
+    warn_of_eta(eta)
     return Cell(tuple(Layer(Fluid(rho, complex(values.bulk_modulus)), thickness) for rho in density))

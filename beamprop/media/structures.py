@@ -1,17 +1,16 @@
-"""What a user builds of fluids: layers, membranes, cells and slabs. Frozen records, checked when they are made."""
+"""What a user builds of fluids and membranes: layers, cells and slabs. Frozen records, checked when they are made."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from .. import validate
-from ..validate import as_complex, as_count, as_number
-from .fluids import AIR, Fluid, Property, check_property, property_values
+from ..validate import as_count, as_number
+from .fluids import AIR, Fluid
+from .membranes import Membrane
 
 
 @dataclass(frozen=True)
@@ -30,42 +29,6 @@ class Layer:
     def __post_init__(self) -> None:
         validate.instance(self.fluid, Fluid, "fluid")
         object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True, tiny=True))
-
-
-@dataclass(frozen=True)
-class Membrane:
-    """A surface without thickness that carries mass: p jumps by ``areal_density * q`` across it.
-
-    A limp membrane of `areal_density` kg/m2 (complex, or a function of frequency); the interface term of the
-    effective medium is one, with a negative value on one face.
-
-    Examples
-    --------
-    >>> sheet = bp.Slab([bp.Membrane(0.3), bp.Layer(bp.AIR, 0.01)])
-    >>> T = float(bp.scattering(sheet, 1000.0, angle=0).transmissivity)
-    >>> mass_law = 1 / (1 + (2 * np.pi * 1000.0 * 0.3 / (2 * 1.25 * 343)) ** 2)
-    >>> bool(np.isclose(T, mass_law))
-    True
-    """
-
-    areal_density: Property
-    active: bool = field(default=False, kw_only=True)
-    thickness = 0.0
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "active", validate.flag(self.active, "active"))
-        if not callable(self.areal_density):
-            value = as_complex(self.areal_density, "areal_density")
-            object.__setattr__(self, "areal_density", value)
-            check_property(value, "areal_density", gain_sign=1, active=self.active)
-
-    def at(self, frequency: np.ndarray) -> np.ndarray:
-        """Areal density at frequencies [Hz], checked; gain is refused at real ones only, as in `Fluid.at`."""
-        values = property_values(self.areal_density, frequency, "areal_density")
-        if callable(self.areal_density):
-            active = self.active or np.iscomplexobj(frequency)
-            check_property(values, "areal_density", gain_sign=1, active=active)
-        return values
 
 
 def _checked_layer(layer: Any) -> Layer | Membrane:
@@ -88,12 +51,12 @@ class Cell:
     layers: tuple[Layer | Membrane, ...]
 
     def __post_init__(self) -> None:
-        layers = (self.layers,) if isinstance(self.layers, Layer) else self.layers
+        layers = (self.layers,) if isinstance(self.layers, Layer | Membrane) else self.layers
         if not isinstance(layers, Iterable):
             raise validate.refuse("layers", "a sequence of Layer", layers)
         layers = tuple(_checked_layer(layer) for layer in layers)
-        if not any(isinstance(layer, Layer) for layer in layers):
-            raise ValueError("layers: expected at least one Layer, got none")
+        if not layers:
+            raise ValueError("layers: expected at least one Layer or Membrane, got none")
         object.__setattr__(self, "layers", layers)
 
     @property
@@ -105,16 +68,31 @@ class Cell:
         return f"Cell({len(self.layers)} layers, {self.thickness:.6g} m)"
 
 
+#: The half-space of a slab that names none: air, and not the object `AIR`, so that an AIR that is given can be told from it.
+UNSTATED = Fluid(AIR.density, AIR.bulk_modulus)
+
+
+def _half_spaces(before: Fluid, after: Fluid, background: Fluid | None) -> tuple[Fluid, Fluid]:
+    """The half-spaces: `background` where they are not given."""
+    if background is None:
+        return before, after
+    validate.instance(background, Fluid, "background")
+    return (background if before is UNSTATED else before), (background if after is UNSTATED else after)
+
+
 @dataclass(frozen=True, init=False)
 class Slab:
     """`periods` copies of a cell between two half-spaces; ``a + b`` stacks b behind a.
 
     Parameters
     ----------
-    cell : Cell, or a sequence of Layer
+    cell : Cell, Layer, Membrane, or a sequence of layers and membranes
+        A membrane alone is a slab too, of thickness 0.
     periods : int
     before, after : Fluid
-        The half-spaces in front and behind.
+        The half-spaces in front and behind; air, unless `background` is given.
+    background : Fluid, optional
+        Both half-spaces at once; `before` or `after` beside it is that of its own side.
 
     Notes
     -----
@@ -128,18 +106,28 @@ class Slab:
     >>> stack = layers + bp.Slab.uniform(water, 0.05)
     >>> round(stack.thickness, 6)
     0.14
+    >>> bp.Slab(bp.Layer(bp.AIR, 0.02), background=water, after=bp.AIR).before == water
+    True
     """
 
     segments: tuple[tuple[Cell, int], ...]
     before: Fluid
     after: Fluid
 
-    def __init__(self, cell: Cell | Iterable[Layer], periods: int = 1, before: Fluid = AIR, after: Fluid = AIR) -> None:
+    def __init__(
+        self,
+        cell: Cell | Layer | Membrane | Iterable[Layer | Membrane],
+        periods: int = 1,
+        before: Fluid = UNSTATED,
+        after: Fluid = UNSTATED,
+        *,
+        background: Fluid | None = None,
+    ) -> None:
         if not isinstance(cell, Cell):
-            if not isinstance(cell, Layer | Iterable):
+            if not isinstance(cell, Layer | Membrane | Iterable):
                 raise validate.refuse("cell", "a Cell", cell)
             cell = Cell(cell)  # type: ignore[arg-type]
-        self._fill(((cell, as_count(periods, "periods")),), before, after)
+        self._fill(((cell, as_count(periods, "periods")),), *_half_spaces(before, after, background))
 
     def _fill(self, segments: tuple[tuple[Cell, int], ...], before: Fluid, after: Fluid) -> None:
         for name, fluid in (("before", before), ("after", after)):
@@ -157,7 +145,14 @@ class Slab:
         object.__setattr__(self, "after", after)
 
     @classmethod
-    def stack(cls, segments: Iterable[tuple[Cell, int]], before: Fluid = AIR, after: Fluid = AIR) -> Slab:
+    def stack(
+        cls,
+        segments: Iterable[tuple[Cell, int]],
+        before: Fluid = UNSTATED,
+        after: Fluid = UNSTATED,
+        *,
+        background: Fluid | None = None,
+    ) -> Slab:
         """A slab of several (cell, periods) pairs, from the near face on."""
         try:
             given = [(cell, periods) for cell, periods in segments]
@@ -167,13 +162,75 @@ class Slab:
         if not pairs:
             raise ValueError("segments: expected at least one (cell, periods) pair, got none")
         slab = object.__new__(cls)
-        slab._fill(pairs, before, after)
+        slab._fill(pairs, *_half_spaces(before, after, background))
         return slab
 
     @classmethod
-    def uniform(cls, fluid: Fluid, thickness: float, before: Fluid = AIR, after: Fluid = AIR) -> Slab:
+    def uniform(
+        cls,
+        fluid: Fluid,
+        thickness: float,
+        before: Fluid = UNSTATED,
+        after: Fluid = UNSTATED,
+        *,
+        background: Fluid | None = None,
+    ) -> Slab:
         """A homogeneous slab of `fluid`, `thickness` metres thick."""
-        return cls(Cell((Layer(fluid, thickness),)), 1, before, after)
+        return cls(Layer(fluid, thickness), 1, before, after, background=background)
+
+    @classmethod
+    def interface(cls, before: Fluid = UNSTATED, after: Fluid = UNSTATED) -> Slab:
+        """The face between two half-spaces, without a layer: a slab of thickness 0.
+
+        Examples
+        --------
+        >>> water = bp.Fluid.from_speed(998.0, 1482.0)
+        >>> r = bp.scattering(bp.Slab.interface(bp.AIR, water), 1000.0, angle=0).r
+        >>> round(float(r.real), 6)  # (Z2 - Z1)/(Z2 + Z1)
+        0.99942
+        """
+        return cls(Membrane(0.0), 1, before, after)
+
+    @classmethod
+    def from_table(
+        cls,
+        table: Any,
+        periods: int = 1,
+        before: Fluid = UNSTATED,
+        after: Fluid = UNSTATED,
+        *,
+        background: Fluid | None = None,
+    ) -> Slab:
+        """A slab from the rows of a CSV file or a pandas DataFrame, from the near face on.
+
+        Parameters
+        ----------
+        table : path, or DataFrame
+            A header and a row a layer. Columns: `thickness`, and `material` (a name that `material` knows), or `density` with
+            `sound_speed` or `bulk_modulus`, and perhaps `attenuation` (Np/m; with `reference_frequency` and `exponent` a
+            power law); or `areal_density` alone, a membrane. SI units, or the one that the header names: ``thickness_mm``,
+            ``density (g/cm3)``, ``attenuation [dB/cm]``. Empty cells are left out; so are lines of the file that begin with #.
+        periods : int
+            How often the rows repeat.
+        before, after, background : Fluid
+            As in `Slab`.
+
+        Raises
+        ------
+        ValueError
+            Names the column, and the row below the header, counted from 1.
+
+        Examples
+        --------
+        >>> import pandas as pd
+        >>> rows = pd.DataFrame({"thickness_mm": [2.0, 5.0], "material": ["steel", "water"]})
+        >>> slab = bp.Slab.from_table(rows, periods=10, background=bp.material("water"))
+        >>> round(slab.thickness, 9)
+        0.07
+        """
+        from .tables import layers_from_table
+
+        return cls(layers_from_table(table), periods, before, after, background=background)
 
     @property
     def cell(self) -> Cell:

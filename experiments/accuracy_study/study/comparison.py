@@ -42,7 +42,8 @@ def answer(case: Case, x: np.ndarray, z: np.ndarray, angles: np.ndarray | None) 
     row["warned"] = any(issubclass(w.category, bp.AccuracyWarning) for w in caught)
     if angles is not None and ds is not None:  # the warning is of the worst angle
         row["warned"] = row["warned"] and float(ds.error_estimate) > case.rtol
-    messages = [str(w.message) for w in caught if not issubclass(w.category, bp.AccuracyWarning)]
+    expected = (bp.AccuracyWarning, bp.HintWarning)  # a wide beam looked at closely is meant here
+    messages = [str(w.message) for w in caught if not issubclass(w.category, expected)]
     if messages and not row["reason"]:
         row["reason"] = f"warning: {messages[0][:80]}"
     return ds, row

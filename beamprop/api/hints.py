@@ -1,0 +1,42 @@
+"""Hints at what is likely a slip in a question: half-spaces left at air, a beam beside its grid. docs/media.md lists the rules."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..media.fluids import Fluid
+from ..media.hints import hint
+from ..media.structures import UNSTATED, Layer, Slab
+from ..sources.base import Beam
+
+#: Ultrasound: where a half-space of air behind water reflects all, and who asks has seldom meant it [Hz].
+ULTRASOUND = 20e3
+#: Density [kg/m3] and sound speed [m/s] of water and what is like it.
+WATER_LIKE = ((850.0, 1200.0), (1300.0, 1700.0))
+
+
+def warn_of_air(slab: Slab, frequency: np.ndarray) -> None:
+    """A hint that both half-spaces are air because none was given, around water at ultrasonic frequencies."""
+    if slab.before is not UNSTATED or slab.after is not UNSTATED or np.max(frequency) < ULTRASOUND:
+        return
+    faces = slab.segments[0][0].layers[0], slab.segments[-1][0].layers[-1]
+    if all(isinstance(layer, Layer) and _is_like_water(layer.fluid, frequency) for layer in faces):
+        hint(
+            "before, after: air, for none was given, around layers like water; background= sets both (bp.AIR if it is meant)"
+        )
+
+
+def _is_like_water(fluid: Fluid, frequency: np.ndarray) -> bool:
+    values = fluid.at(np.max(frequency))
+    density, speed = abs(complex(values.rho_z)), abs(complex(values.bulk_modulus / values.rho_z)) ** 0.5
+    return all(least <= v <= most for v, (least, most) in zip((density, speed), WATER_LIKE, strict=True))
+
+
+def warn_of_width(slab: Slab, beam: Beam, frequency: np.ndarray, x: np.ndarray) -> None:
+    """A hint that a beam of many wavelengths does not fit into the grid that its field is asked on."""
+    fwhm, span = float(np.max(getattr(beam, "fwhm", 0.0))), float(np.ptp(x))
+    if fwhm < 1 or fwhm <= 2 * span or x.size < 100:
+        return
+    wavelengths = fwhm * float(np.max(np.abs(slab.before.wavenumber(np.max(frequency))))) / (2 * np.pi)
+    if 20 < wavelengths < np.inf:
+        hint(f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and x spans {span:g} m: is it in metres?")
