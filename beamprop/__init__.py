@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
+    from .study.sweep import sweep
 
 _HOMES = {
     "media.attenuation": ("power_law",),
@@ -78,6 +79,7 @@ _HOMES = {
     "io.comsol": ("read_comsol", "to_grid"),
     "io.datasets": ("provenance",),
     "io.storage": ("load", "save"),
+    "study.sweep": ("sweep",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 _MODULES = ("fem", "plot")
@@ -123,6 +125,7 @@ __all__ = [
     "save_field",
     "scattering",
     "standard_emt",
+    "sweep",
     "to_grid",
     "wood_mixture",
 ]

@@ -24,6 +24,8 @@ from .blocked import BlockedVariable
 from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
+#: The root's attribute that describes a study, whose store grows block by block and has no list of checksums.
+STUDY = "_nc_beamprop_study"
 #: In place of a CRC-32: the chunk is one of fill values, which Zarr does not write.
 ABSENT = "-" * 8
 #: Largest file of metadata that is read [bytes].
@@ -55,10 +57,17 @@ def _compressors() -> list[Any]:
 # --- writing --------------------------------------------------------------------------------------------------
 
 
+def checksum(data: bytes) -> bytes:
+    """The four bytes that the codec crc32c puts behind a chunk."""
+    from google_crc32c import value
+
+    return int(value(data)).to_bytes(4, "little")
+
+
 def write(draft: Path, ds: xr.Dataset) -> None:
     """Write a dataset."""
     need_zarr()
-    ds.to_zarr(draft, encoding={name: _encoding(v) for name, v in ds.variables.items()}, consolidated=False)
+    ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
 
@@ -80,13 +89,14 @@ def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.D
     for where, values in variable.blocks:
         into[where] = values
     others = rest()
-    others.to_zarr(draft, mode="a", encoding={n: _encoding(v) for n, v in others.variables.items()}, consolidated=False)
+    others.to_zarr(draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False)
     record(draft)
 
 
-def _encoding(v: xr.Variable) -> dict[str, Any]:
+def encoding(dtype: np.dtype) -> dict[str, Any]:
+    """How an array is written."""
     # unfinished complex chunks would read as 0 + 0j otherwise
-    fill = {"fill_value": complex(np.nan, np.nan)} if v.dtype.kind == "c" else {}
+    fill = {"fill_value": complex(np.nan, np.nan)} if dtype.kind == "c" else {}
     return {"compressors": _compressors(), **fill}
 
 
@@ -143,6 +153,7 @@ def read(path: Path) -> xr.Dataset:
         _refuse_foreign(path, folder, about)
     try:
         _check_record(path, nodes)
+        _check_blocks(path, nodes)
     except (LookupError, TypeError, AttributeError):
         raise ValueError(
             f"{path}: expected a store as it was written, got one whose list of checksums is none"
@@ -283,3 +294,26 @@ def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
                 raise ValueError(f"{wrong} variable {name!r}: its chunk {key!r} {what}")
     if added := set(arrays) - set(whole["arrays"]):
         raise ValueError(f"{wrong} what it holds: {', '.join(map(repr, sorted(added)))} came later")
+
+
+def _check_blocks(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
+    """Of a study, each block that has a status has a chunk of every array, and arrays that are not in blocks have all of theirs."""
+    if STUDY not in nodes[path].get("attributes", {}):
+        return
+    status = nodes[path / "status"]
+    axes = status["dimension_names"]
+    blocks = [(k, key) for k, key in enumerate(_chunk_keys(status)) if (path / "status" / key).exists()]
+    for folder, about in nodes.items():
+        if about["node_type"] != "array":
+            continue
+        dims = about["dimension_names"]
+        if folder.name == "records":
+            keys = [f"c/{k}" for k, _ in blocks]
+        elif dims[: len(axes)] == axes and folder.name not in axes:
+            keys = [key + "/0" * (len(dims) - len(axes)) for _, key in blocks]
+        else:
+            keys = list(_chunk_keys(about))
+        for key in keys:
+            if not (folder / key).exists():
+                what = f"damage in variable {folder.name!r}: its chunk {key!r} is missing"
+                raise ValueError(f"{path}: expected a store as it was written, got one with {what}")
