@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from .. import validate
 from .._version import __version__
 from ..io import datasets
 from ..io.storage.whole import check_target, scratch_beside, sync
-from ..io.storage.zarr_store import STUDY, checksum, encoding, need_zarr
+from ..io.storage.zarr_store import STUDY, checksum, chunk_files, encoding, need_zarr
 from .arrays import Spec, chunks_of, specs
 from .axes import Study
 from .blocks import Grid
@@ -41,6 +42,9 @@ class Store:
         with self.dataset() as ds:
             self.schema = _schema(ds, study, about)
         self._specs = specs(study, self.schema, self.grid)
+        own = (file for name in (*study.axes, *self.schema.coords) for file in chunk_files(path / name))
+        if wrong := _damage(path, own):
+            raise validate.refuse("store", "one whose axes are as they were written, or a new name", f"{path}: {wrong}")
 
     def put(self, block: int, result: Result) -> None:
         """Write a block, its status last.
@@ -67,15 +71,7 @@ class Store:
 
     def damage(self, block: int) -> str:
         """What is wrong with a block that has a status: the first chunk that is missing or not as it was written."""
-        for name in self._specs:
-            file = self._file(name, block)
-            try:
-                data = file.read_bytes()
-            except FileNotFoundError:
-                return f"{file.relative_to(self.path)} is missing"
-            if len(data) < 4 or checksum(data[:-4]) != data[-4:]:
-                return f"{file.relative_to(self.path)} is not as it was written (wrong checksum)"
-        return ""
+        return _damage(self.path, (self._file(name, block) for name in self._specs))
 
     def failed(self, block: int) -> bool:
         """Whether a point of a block has failed."""
@@ -106,6 +102,19 @@ class Store:
     def dataset(self) -> xr.Dataset:
         """What is kept, read from the disk when it is used."""
         return xr.open_zarr(self.path, consolidated=False, chunks=None)
+
+
+def _damage(path: Path, chunks: Iterable[Path]) -> str:
+    """What is wrong with the first chunk that is missing or not as it was written."""
+    for file in chunks:
+        name = file.relative_to(path).as_posix()
+        try:
+            data = file.read_bytes()
+        except FileNotFoundError:
+            return f"{name} is missing"
+        if len(data) < 4 or checksum(data[:-4]) != data[-4:]:
+            return f"{name} is not as it was written (wrong checksum)"
+    return ""
 
 
 def _write(file: Path, spec: Spec, part: np.ndarray) -> None:
@@ -223,8 +232,14 @@ def create(path: Path, study: Study, schema: Schema, grid: Grid, seconds: float)
                 compressors=encoding(np.dtype(float))["compressors"],
             )
         axes = datasets.labelled({}, {**study.coords(), **schema.coords}, {})
+        words = {name: v.astype(object) for name, v in axes.variables.items() if v.dtype.kind == "U"}
+        axes = axes.assign_coords(words)  # Zarr 3 has strings of any length, none of a fixed one
         axes.to_zarr(
-            draft, mode="a", encoding={n: encoding(v.dtype) for n, v in axes.variables.items()}, consolidated=False
+            draft,
+            mode="a",
+            write_empty_chunks=True,
+            encoding={n: encoding(v.dtype) for n, v in axes.variables.items()},
+            consolidated=False,
         )
         group.attrs.put({**attributes_of(study, schema), "coordinates": coordinates, STUDY: json.dumps(about)})
         sync(draft)

@@ -127,6 +127,11 @@ def _chunk_keys(about: dict[str, Any]) -> Iterator[str]:
     return ("/".join(["c", *map(str, index)]) for index in itertools.product(*map(range, counts)))
 
 
+def chunk_files(folder: Path) -> list[Path]:
+    """The files of an array's chunks, there or not."""
+    return [folder / key for key in _chunk_keys(_metadata(folder))]
+
+
 def _chunk_crcs(folder: Path, about: dict[str, Any]) -> Iterator[str]:
     for key in _chunk_keys(about):
         try:
