@@ -13,6 +13,7 @@ import functools
 import hashlib
 import inspect
 import linecache
+import sys
 import sysconfig
 import textwrap
 import types
@@ -20,15 +21,22 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import pandas as pd
+import xarray as xr
 
+#: Of a part's text so much is kept [characters], and a checksum.
+LONGEST = 5000
 _INSTALLED = tuple(sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib"))
 
 
 def parts_of(question: Any) -> dict[str, str]:
     """Name -> text of everything that a question's answer may depend on; equal for equal questions."""
-    parts = {"question": f"{getattr(question, '__module__', '')}.{getattr(question, '__qualname__', type(question))}"}
+    parts: dict[str, str] = {}
     _collect(question, "question", parts, set())
-    return parts
+    return {
+        name: text if len(text) <= LONGEST else f"{text[:LONGEST]} {_hash(text.encode())}"
+        for name, text in parts.items()
+    }
 
 
 def _collect(value: Any, name: str, parts: dict[str, str], seen: set[int]) -> None:
@@ -39,20 +47,27 @@ def _collect(value: Any, name: str, parts: dict[str, str], seen: set[int]) -> No
     elif isinstance(value, types.MethodType):
         parts[f"{name}.self"] = text_of(value.__self__)
         _collect(value.__func__, name, parts, seen)
-    elif isinstance(value, types.FunctionType) and _is_own(value):
-        if id(value) not in seen:
+    elif isinstance(value, types.FunctionType | type):
+        if not _is_own(value):
+            parts[f"{name}.value"] = text_of(value)
+        elif id(value) not in seen:
             seen.add(id(value))
             parts[f"{name}.source"] = source_of(value)
-            for inner, around in _taken_from_around(value):
-                _collect(around, inner, parts, seen)
+            functions = vars(value).values() if isinstance(value, type) else (value,)
+            for function in functions:
+                for inner, around in _taken_from_around(function) if isinstance(function, types.FunctionType) else ():
+                    _collect(around, inner, parts, seen)
     else:
         parts[f"{name}.value"] = text_of(value)
+        if callable(value):
+            _collect(type(value), type(value).__qualname__, parts, seen)
 
 
-def _is_own(function: types.FunctionType) -> bool:
-    """Whether a function is neither an installed package's nor this one's."""
-    module = function.__module__ or ""
-    return module.split(".")[0] != __name__.split(".")[0] and not function.__code__.co_filename.startswith(_INSTALLED)
+def _is_own(value: types.FunctionType | type) -> bool:
+    """Whether a function or class is neither an installed package's nor this one's."""
+    module = value.__module__ or ""
+    file = getattr(sys.modules.get(module), "__file__", None) or ""
+    return module.split(".")[0] not in (__name__.split(".")[0], "builtins") and not file.startswith(_INSTALLED)
 
 
 def _taken_from_around(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
@@ -75,14 +90,15 @@ def _globals_of(code: types.CodeType) -> set[str]:
     return names.union(*(_globals_of(inner) for inner in code.co_consts if isinstance(inner, types.CodeType)))
 
 
-def source_of(function: types.FunctionType) -> str:
+def source_of(value: types.FunctionType | type) -> str:
     """The source without comments and layout; of a lambda its body; the instructions where there is no source."""
     try:
-        if function.__name__ == "<lambda>":
-            return _body_of_lambda(function.__code__)
-        return ast.unparse(ast.parse(textwrap.dedent(inspect.getsource(function))))
+        if value.__name__ == "<lambda>" and isinstance(value, types.FunctionType):
+            return _body_of_lambda(value.__code__)
+        return ast.unparse(ast.parse(textwrap.dedent(inspect.getsource(value))))
     except (OSError, TypeError, SyntaxError, ValueError):
-        return _instructions(function.__code__)
+        functions = vars(value).values() if isinstance(value, type) else (value,)
+        return " ".join(_instructions(f.__code__) for f in functions if isinstance(f, types.FunctionType))
 
 
 def _body_of_lambda(code: types.CodeType) -> str:
@@ -97,7 +113,11 @@ def _body_of_lambda(code: types.CodeType) -> str:
     encoded = [line.encode() for line in lines]  # columns count bytes
     encoded[-1] = encoded[-1][: end[1]]
     encoded[0] = encoded[0][start[1] :]
-    return " ".join(b"".join(encoded).decode().split())
+    text = b"".join(encoded).decode()
+    try:
+        return ast.unparse(ast.parse(f"({text}\n)"))
+    except SyntaxError:  # the outermost parentheses are no instruction's
+        return " ".join(text.split())
 
 
 def _instructions(code: types.CodeType) -> str:
@@ -111,7 +131,8 @@ def _hash(data: bytes) -> str:
 
 def text_of(value: Any) -> str:
     """A text that differs where values do; arrays by their checksum."""
-    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
+    value = _plain(value)
+    if isinstance(value, np.ndarray):
         return f"array {value.dtype} {value.shape} {_hash(np.ascontiguousarray(value).tobytes())}"
     if isinstance(value, np.generic):
         return repr(value.item())
@@ -132,6 +153,19 @@ def text_of(value: Any) -> str:
     return text if " at 0x" not in text else _text_of_object(value)
 
 
+def _plain(value: Any) -> Any:
+    """Containers whose repr is shortened or has no order, as those whose has."""
+    if isinstance(value, pd.DataFrame | pd.Series):
+        value = value.to_xarray()
+    if isinstance(value, xr.Dataset | xr.DataArray):
+        return value.to_dict(data="array")
+    if isinstance(value, set | frozenset):
+        return sorted(map(text_of, value))
+    if isinstance(value, np.ndarray) and value.dtype.kind == "O":
+        return value.tolist()
+    return value
+
+
 def _text_of_object(value: Any) -> str:
     """Of an object whose repr is an address: its class and what it holds."""
-    return f"{type(value).__module__}.{type(value).__qualname__}({text_of(getattr(value, '__dict__', {}))})"
+    return f"{type(value).__qualname__}({text_of(getattr(value, '__dict__', {}))})"

@@ -17,8 +17,8 @@ from .work import FAILED, Result, Task, answers, empty_result
 LOOK = 0.2
 #: A block whose worker dies so many times, with no other under way, has failed.
 DEATHS = 2
-#: So many failed blocks before any is answered mean that no worker lives.
-HOPELESS = 3
+#: So many blocks that fail so, one after another, mean that no worker lives.
+HOPELESS = 10
 
 
 class Locks(Protocol):
@@ -44,7 +44,7 @@ class Run:
     flight: dict[Future, int] = field(default_factory=dict)
     suspects: deque[int] = field(default_factory=deque)
     deaths: dict[int, int] = field(default_factory=dict)
-    answered: int = 0
+    lost: int = 0
 
 
 def answer_all(run: Run) -> None:
@@ -103,7 +103,7 @@ def _collect(run: Run, done: set[Future]) -> None:
         except BrokenExecutor:
             dead = True
         else:
-            run.answered += 1
+            run.lost = 0
             _keep(run, run.flight.pop(future), result)
     if dead:
         _bury(run)
@@ -132,9 +132,10 @@ def _bury(run: Run) -> None:
     block = run.suspects[0]
     run.deaths[block] = run.deaths.get(block, 0) + 1
     if run.deaths[block] >= DEATHS:
-        if not run.answered and len(run.deaths) >= HOPELESS:
+        run.lost += 1
+        if run.lost >= HOPELESS:
             raise RuntimeError(
-                "workers: expected processes that live, got three that died before they had answered a block"
+                f"workers: expected processes that live, got {HOPELESS} blocks in a row that none survived"
             )
         task = run.task(block)
         message = (
