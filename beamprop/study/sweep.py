@@ -23,7 +23,7 @@ from .arrays import InMemory, specs
 from .axes import Question, Study, study_of
 from .blocks import Grid, grid_of, points_of_a_block
 from .run import Run, answer_all
-from .work import DONE, FAILED, Answer, Schema, Task, answer_of, one_thread, schema_of
+from .work import DONE, FAILED, Answer, Schema, Task, alone, answer_of, schema_of
 
 #: Points are measured for so long [s], the first aside, which pays for what is loaded once, unless it takes longer than that can; and at so
 #: many places at most.
@@ -208,8 +208,8 @@ def sample_of(study: Study) -> Sample:
     for place in np.unique(np.linspace(0, study.size - 1, PLACES).astype(int)).tolist():
         start = time.perf_counter()
         (point,) = study.points(np.array([place]))
-        with one_thread():
-            known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)))
+        with alone() as caught:
+            known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)), caught)
         seconds.append(time.perf_counter() - start)
         if schema is None and answer.dataset is not None:
             schema = schema_of(answer.dataset, set(study.axes))
