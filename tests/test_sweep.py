@@ -3,12 +3,15 @@
 import functools
 import itertools
 import json
+import re
 import warnings
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
+import sweep as benchmark
 import xarray as xr
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import beamprop as bp
 from beamprop.study import blocks, run, sweep
@@ -199,6 +202,23 @@ def test_processes_take_lambdas_closures_and_partials(monkeypatch):
     assert (ds.status == 1).all()
 
 
+def blas_threads():
+    return max(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+
+
+def test_workers_have_one_blas_thread(monkeypatch):
+    """And so has this process while it answers, and not longer."""
+    monkeypatch.setattr(sweep, "START", 0.0)
+    with threadpool_limits(2):
+        before = blas_threads()
+        for workers in (1, 2):
+            ds = bp.sweep(
+                lambda v: xr.Dataset({"n": blas_threads()}), {"v": np.arange(40)}, workers=workers, progress=False
+            )
+            assert (ds.n == 1).all()
+        assert blas_threads() == before
+
+
 def test_progress_counts_points():
     seen = []
     bp.sweep(plane, {"value": np.arange(7)}, workers=1, progress=lambda items: (seen.append(k) or k for k in items))
@@ -234,3 +254,11 @@ def test_points_are_plain_numbers():
     assert study.points(np.array([0, 4])) == [("a", 0), ("b", 1)]
     assert all(type(v) is int for _, v in study.points(np.arange(6)))
     assert run.DEATHS == 2
+
+
+def test_the_overhead_of_a_block_is_what_the_benchmark_measures():
+    """Of a block of 500 points: kept in a store and sent, in less than `OVERHEAD`; a point in less than 0.1 ms."""
+    (text,) = benchmark.own_costs()
+    point, _, stored, sent = (float(number) for number in re.findall(r"([\d.]+) (?:µs|ms)", text)[:4])
+    assert 1e-3 * (stored + sent) < 2 * blocks.OVERHEAD, text
+    assert point < 100, text

@@ -169,6 +169,6 @@ def _record_of_points(ds: xr.Dataset) -> str:
     for block in np.unique(numbers // per_block):
         if block < 0 or len(texts) > 1:
             return ""
-        of_block = json.loads(str(ds["records"].values[block]))
+        of_block = json.loads(str(ds["records"][int(block)].values))
         texts |= {of_block[number % per_block] for number in numbers[numbers // per_block == block]}
     return texts.pop() if len(texts) == 1 else ""

@@ -242,8 +242,9 @@ def _answer(study: Study, kept: InMemory | stores.Store, sample: Sample, blocks:
         return Task(question, tuple(study.axes), study.points(flat), sample.schema, known)
 
     steps.step(sum(sizes.values()) - sum(sizes[block] for block in waiting))
-    engine = way.engine(sample.seconds * sum(sizes[block] for block in waiting))
+    seconds = sample.seconds * sum(sizes[block] for block in waiting)
     with contextlib.closing(kept.claims()) as claims:
+        engine = way.engine(seconds)
         answer_all(Run(kept, claims, task, engine, lambda block: steps.step(sizes[block]), waiting))
     steps.close()
 
