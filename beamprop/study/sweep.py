@@ -172,9 +172,10 @@ def _check(kept: stores.Store, blocks: range, repair: bool) -> None:
         )
     if repair:
         with contextlib.closing(kept.claims()) as claims:
-            for block in blocks:
-                if kept.is_kept(block) and (block in damaged or kept.failed(block)) and claims.take(block):
-                    kept.forget(block)
+            for again in (lambda: damaged, kept.failures):
+                for block in set(again()) & set(blocks):
+                    if claims.take(block) and kept.is_kept(block):
+                        kept.forget(block)
 
 
 # --- how they come ------------------------------------------------------------------------------------------

@@ -98,7 +98,9 @@ def _dump(ds: xr.Dataset, file: h5netcdf.File, compression: int) -> None:
 
 def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
     """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
-    if not v.size or not v.ndim or v.dtype.kind in "OSTU":
+    if v.dtype.kind in "OT":  # texts, of which earlier versions of xarray have to be told
+        return {"dtype": str}
+    if not v.size or not v.ndim or v.dtype.kind in "SU":
         return {}
     packed = {"zlib": True, "complevel": compression} if compression else {}
     return {"fletcher32": True, "chunksizes": _chunks(v), **packed}

@@ -7,11 +7,13 @@ begin with "_nc".
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
 import os
 import re
+import warnings
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -48,6 +50,14 @@ def need_zarr() -> None:
         raise ImportError('Zarr stores need zarr: pip install "beamprop[zarr]"') from None
 
 
+@contextlib.contextmanager
+def texts_allowed() -> Iterator[None]:
+    """Without the warning of earlier versions of zarr that texts were no part of the format yet."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".* not part in the Zarr format 3 specification")
+        yield
+
+
 def _compressors() -> list[Any]:
     from zarr.codecs import Crc32cCodec, ZstdCodec
 
@@ -67,7 +77,8 @@ def checksum(data: bytes) -> bytes:
 def write(draft: Path, ds: xr.Dataset) -> None:
     """Write a dataset."""
     need_zarr()
-    ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
+    with texts_allowed():
+        ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
 
@@ -89,7 +100,9 @@ def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.D
     for where, values in variable.blocks:
         into[where] = values
     others = rest()
-    others.to_zarr(draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False)
+    others.to_zarr(
+        draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False
+    )
     record(draft)
 
 
@@ -164,7 +177,8 @@ def read(path: Path) -> xr.Dataset:
             f"{path}: expected a store as it was written, got one whose list of checksums is none"
         ) from None
     unreadable = "expected a Zarr store, got one that cannot be read"
-    return read_values(path, lambda: xr.open_zarr(path, consolidated=False), unreadable)
+    with texts_allowed():
+        return read_values(path, lambda: xr.open_zarr(path, consolidated=False), unreadable)
 
 
 def _refuse_strange_files(path: Path) -> None:
