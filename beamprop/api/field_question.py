@@ -9,12 +9,15 @@ import xarray as xr
 
 from .. import validate
 from ..contour import sums
-from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
 from ..sources.base import Beam, moved_to_origin
 from . import checks
+from .field_variables import checked_variables
+
+#: All dimensions of a field, in its order.
+AXES = ("frequency", "angle", "z", "x")
 
 
 class Labels(NamedTuple):
@@ -26,6 +29,7 @@ class Labels(NamedTuple):
     boundary: str
     period: float | None
     rtol: float
+    variables: tuple[str, ...]
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -39,7 +43,16 @@ class Labels(NamedTuple):
 
 
 def checked_question(
-    slab: Slab, beam: Beam, frequency: Any, x: Any, z: Any, angle: Any, boundary: str, period: float | None, rtol: float
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    x: Any,
+    z: Any,
+    angle: Any,
+    boundary: str,
+    period: float | None,
+    rtol: float,
+    variables: Any = ("p",),
 ) -> tuple[FieldQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument."""
     validate.instance(slab, Slab, "slab")
@@ -57,21 +70,18 @@ def checked_question(
     elif period is not None:
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, source, flat_f, flat_angles, flat_z, positions - origin, period, rtol)
-    return question, Labels(axes, slab, beam, boundary, period, rtol)
+    return question, Labels(axes, slab, beam, boundary, period, rtol, checked_variables(variables))
 
 
-def warn_of_field(worst: ErrorBudget, rtol: float) -> None:
-    """Warn of the error of a field's worst beam, with its largest term, if it is above rtol."""
-    checks.warn_if_inaccurate(float(worst.total[0]), rtol, stacklevel=4, mostly=worst.largest)
-
-
-def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:
-    """The dataset of p (F, A, Z, X) and errors (F, A); without p, all else."""
-    dims, pick = labels.dims, labels.pick
-    variables: dict[str, Any] = {} if p is None else {"p": (dims, p[pick])}
+def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:
+    """The dataset of variables, on the first of (frequency, angle, z, x), and of their errors, by name."""
+    pick = labels.pick
+    axes = {n: labels.dims[: len([d for d in labels.dims if d in AXES[:n]])] for n in range(2, 5)}
+    variables: dict[str, Any] = {name: (axes[v.ndim], v[pick[: v.ndim]]) for name, v in values.items()}
     if labels.boundary == "open":
-        few = tuple(d for d in dims if d in ("frequency", "angle"))
-        variables["error_estimate"] = (few, errors[pick[:2]])
+        for name, error in errors.items():
+            variables["error_estimate" if name == "p" else f"error_estimate_{name}"] = (axes[2], error[pick[:2]])
+    more = {} if labels.variables == ("p",) else {"variables": labels.variables}
     ds = datasets.make(
         variables,
         checks.coords(**labels.axes),
@@ -82,6 +92,7 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
         boundary=labels.boundary,
         period=labels.period,
         rtol=labels.rtol,
+        **more,
     )
     ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness}
     if labels.period is not None:

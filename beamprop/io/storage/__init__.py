@@ -18,7 +18,7 @@ import xarray as xr
 
 from ... import validate
 from ..labels import label
-from .blocked import BlockedVariable, Blocks
+from .blocked import BlockedVariables, Blocks
 from .parts import joined, split
 from .settled import read_settled
 from .whole import check_target, write_whole
@@ -101,40 +101,40 @@ def _level(compression: int) -> int:
 
 def save_blocks(
     path: str | Path,
-    name: str,
+    kinds: dict[str, type],
     sizes: dict[str, int],
     chunks: tuple[int, ...],
     blocks: Blocks,
     rest: Callable[[], xr.Dataset],
 ) -> None:
-    """Write one complex variable block by block, then what goes with it; `load` gives what it gives of `save`'s file.
+    """Write variables block by block, then what goes with them; `load` gives what it gives of `save`'s file.
 
     Parameters
     ----------
     path : path
         Ending in .nc or .zarr; replaced if it exists, once the new one is complete.
-    name : str
+    kinds : name -> type of its values, complex or float
     sizes : dimension -> length
-        Of the variable, in its order.
+        Of all variables, in their order.
     chunks : tuple of int
         Of the file, which blocks must cover whole.
-    blocks : iterable of (index, values)
+    blocks : iterable of (index, name -> values)
     rest : function
-        The dataset without that variable, asked for when all blocks have been written.
+        The dataset without these variables, asked for when all blocks have been written.
     """
     path = _path(path)
     kind = _kind(path)
-    variable = BlockedVariable(name, sizes, chunks, dict(label(name)), blocks)
+    variables = BlockedVariables(kinds, sizes, chunks, {name: dict(label(name)) for name in kinds}, blocks)
 
     def write(draft: Path) -> None:
         if kind == "netcdf":
             from . import netcdf
 
-            netcdf.write_blocks(draft, variable, rest)
+            netcdf.write_blocks(draft, variables, rest)
         else:
             from . import zarr_store
 
-            zarr_store.write_blocks(draft, variable, rest)
+            zarr_store.write_blocks(draft, variables, rest)
 
     write_whole(path, write)
 

@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from .blocked import BlockedVariable
+from .blocked import BlockedVariables
 from .guarded import GuardedFile, uninterrupted
 from .seal import Stretch, check_seal, seal
 from .settled import Refusal, read_values, refuse_expansion
@@ -43,18 +43,22 @@ def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
         _dump(ds, file, compression)
 
 
-def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
-    """Write one variable block by block, and then the others."""
-    shape = tuple(variable.sizes.values())
-    with _new(draft, _stored(shape, variable.chunks, 16), 8) as (file, guarded):
-        file.dimensions = variable.sizes
-        options: dict[str, Any] = {"chunks": variable.chunks, "fletcher32": True} if shape else {}
-        into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
-        into.attrs.update(variable.attrs)
-        for where, values in variable.blocks:
-            with uninterrupted():
-                into[where] = values
-            guarded.check()
+def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr.Dataset]) -> None:
+    """Write variables block by block, and then the others."""
+    sizes, chunks = variables.sizes, variables.chunks
+    shape = tuple(sizes.values())
+    bytes_each = sum(np.dtype(kind).itemsize for kind in variables.kinds.values())
+    with _new(draft, _stored(shape, chunks, bytes_each), 7 + len(variables.kinds)) as (file, guarded):
+        file.dimensions = sizes
+        options: dict[str, Any] = {"chunks": chunks, "fletcher32": True} if shape else {}
+        into = {n: file.create_variable(n, tuple(sizes), np.dtype(k), **options) for n, k in variables.kinds.items()}
+        for name, variable in into.items():
+            variable.attrs.update(variables.attrs[name])
+        for where, block in variables.blocks:
+            for name, values in block.items():
+                with uninterrupted():
+                    into[name][where] = values
+                guarded.check()
         _dump(rest(), file, 0)
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .blocked import BlockedVariable
+from .blocked import BlockedVariables
 from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
@@ -62,23 +62,28 @@ def write(draft: Path, ds: xr.Dataset) -> None:
     record(draft)
 
 
-def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
-    """Write one complex variable block by block, and then the others."""
+def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr.Dataset]) -> None:
+    """Write variables block by block, and then the others."""
     need_zarr()
     import zarr
 
-    into = zarr.open_group(draft, mode="w").create_array(
-        variable.name,
-        shape=tuple(variable.sizes.values()),
-        dtype=complex,
-        chunks=variable.chunks,
-        compressors=_compressors(),
-        fill_value=complex(np.nan, np.nan),
-        dimension_names=list(variable.sizes),
-        attributes=variable.attrs,
-    )
-    for where, values in variable.blocks:
-        into[where] = values
+    group = zarr.open_group(draft, mode="w")
+    into = {
+        name: group.create_array(
+            name,
+            shape=tuple(variables.sizes.values()),
+            dtype=kind,
+            chunks=variables.chunks,
+            compressors=_compressors(),
+            fill_value=np.nan if kind is float else complex(np.nan, np.nan),
+            dimension_names=list(variables.sizes),
+            attributes=variables.attrs[name],
+        )
+        for name, kind in variables.kinds.items()
+    }
+    for where, block in variables.blocks:
+        for name, values in block.items():
+            into[name][where] = values
     others = rest()
     others.to_zarr(draft, mode="a", encoding={n: _encoding(v) for n, v in others.variables.items()}, consolidated=False)
     record(draft)
