@@ -36,10 +36,20 @@ def power_through_planes(
 
     Of a periodic array of beams it is the power through one period, a sum of its orders, and no error is known.
     """
+    # in a half-space without loss it does not change with z
+    front, behind = (_lossless(s, side) for side in (False, True))
+    z = np.clip(z, 0.0 if front else -math.inf, s.thickness if behind else math.inf)
     planes, which = np.unique(z, return_inverse=True)
     parts = [_through_planes(s, beam, planes[i : i + PLANES], rtol, period) for i in range(0, planes.size, PLANES)]
     power = np.concatenate([part[0] for part in parts])
     return power[which], max(part[1] for part in parts)
+
+
+def _lossless(s: SampledSlab, behind: bool) -> bool:
+    """Whether a half-space carries waves without loss, by its wave along the normal."""
+    normal = np.zeros(1, complex)
+    kz = s.kz_after(normal) if behind else s.kz_before(normal)
+    return not any(np.any(v.imag) for v in (kz, *(s.velocity(normal, q, behind) for q in ("v_x", "v_z"))))
 
 
 def _through_planes(
@@ -64,11 +74,12 @@ def _through_planes(
         total = 2 * math.pi * (flux(contour.k.real, 0.0)[:-1].real @ contour.weight)
         return total, math.nan
     end = _last_kx(s, beam, rtol)
-    count = 200 + 2 * end * beam.reach(1e-6) + 2 * float(s.last_branch) * (max(float(z[-1]), s.thickness) - beam.z0)
+    way = s.thickness + max(float(z[-1]) - s.thickness, 0.0) + max(-float(z[0]), 0.0)
+    count = 200 + 2 * end * beam.reach(1e-6) + 2 * float(s.last_branch) * way
     if count > MOST_NODES:
         raise ValueError(
-            f"z0: expected a source whose power takes at most {MOST_NODES:.3g} plane waves, got {count:.2g}: bring its launch plane to a "
-            "distance from a slab with loss, where edges in the source have no end to their spectrum, and the planes nearer"
+            f"variables: expected power_through of at most {MOST_NODES:.3g} plane waves, got {count:.2g}: take a thinner slab, or bring the "
+            "launch plane of a source with sharp edges to a distance from a slab with loss"
         )
     return _integrated(flux, end, [b for b in s.real_branches if b < end], count, rtol)
 
