@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .. import memory
 from ..contour.error import SHIFT
 from ..contour.paths import periodic_contour
 from ..response import transfer_function
@@ -81,6 +82,7 @@ def _through_planes(
             f"variables: expected power_through of at most {MOST_NODES:.3g} plane waves, got {count:.2g}: take a thinner slab, or bring the "
             "launch plane of a source with sharp edges to a distance from a slab with loss"
         )
+    memory.check_contour(count * (FINE + COARSE) / FINE, planes=z.size)
     return _integrated(flux, end, [b for b in s.real_branches if b < end], count, rtol)
 
 
