@@ -17,7 +17,7 @@ from pathlib import Path
 COMPLEX = 16
 #: Whatever is smaller than this is not worth asking the system what is free.
 SMALL = 2**26
-#: Where the system does not say what is free.
+#: Where the system does not say what is free: 8 GB.
 UNKNOWN = 2.0**33
 VARIABLE = "BEAMPROP_MEMORY"
 PREFIXES = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
@@ -65,15 +65,15 @@ def available() -> float:
 
 def _numbers(path: str | Path) -> dict[str, float]:
     """Name -> number of a file of lines such as ``MemAvailable:  123 kB``; '' is the name of a lone number."""
-    found = {}
+    numbers = {}
     with contextlib.suppress(OSError, ValueError):
         for line in Path(path).read_text(encoding="ascii").splitlines():
             words = line.replace(":", " ").split()
             if len(words) == 1:
                 words.insert(0, "")
             with contextlib.suppress(ValueError, IndexError):
-                found[words[0]] = float(words[1]) * (1024 if words[-1] == "kB" else 1)
-    return found
+                numbers[words[0]] = float(words[1]) * (1024 if words[-1] == "kB" else 1)
+    return numbers
 
 
 def _system() -> Iterator[float]:

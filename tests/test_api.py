@@ -230,7 +230,9 @@ def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
         return solution._replace(budget=solution.budget._replace(difference=solution.budget.difference + 3e-5))
 
     monkeypatch.setattr(contour_choice, "choose_contour", worse)
-    with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-05 .* above the asked rtol 1\.0e-08, mostly: the difference"):
+    with pytest.warns(
+        bp.AccuracyWarning, match=r"3\.0e-05 .* above the requested rtol 1\.0e-08, mostly: the difference"
+    ):
         ds = bp.field(SLAB, BEAM, F, X, [0.0])
     assert ds.error_estimate == pytest.approx(3e-5, rel=1e-2)
 

@@ -23,7 +23,7 @@ def test_rows_of_low_rank_follow_from_a_few(rank):
     rows, columns, pivots = low_rank.cross(h / size, 1e-14, 40)
     assert rows.size <= rank + 1
     assert np.all(np.diff(pivots) < 1e-12)
-    mix = low_rank.mixing(h[:, columns], h[rows][:, columns])
+    mix = low_rank.row_weights(h[:, columns], h[rows][:, columns])
     np.testing.assert_allclose((mix @ (h[rows] / size[rows] * size[rows]) - h) / size, 0, atol=1e-12)
     assert low_rank.cross(h / size, 1e-14, rank - 1).rows.size == rank - 1
 
@@ -67,9 +67,9 @@ def test_a_map_sums_few_of_its_planes(name, monkeypatch):
     x, z = np.linspace(-1.2, 1.2, 200), np.linspace(z0, slab.thickness + 0.3, 600)
     count, fill = [], evaluate.fill
 
-    def watched(s, beams, solution, h, *rest):
+    def watched(waves, h, out):
         count.append(h.shape[0])
-        return fill(s, beams, solution, h, *rest)
+        return fill(waves, h, out)
 
     monkeypatch.setattr(evaluate, "fill", watched)
     ordered = bp.field(slab, beam, 2500.0, x, z)
@@ -99,8 +99,8 @@ def test_planes_that_do_not_follow_are_summed_themselves(monkeypatch):
     """Where the few planes do not serve, the answer is that of every plane by itself."""
     slab, beam = MANY_PLANES["lossy"][0], bp.GaussianBeam(0.096)
     x, z = np.linspace(-1.2, 1.2, 100), np.linspace(0, slab.thickness, 300)
-    right = low_rank.mixing
-    monkeypatch.setattr(evaluate, "mixing", lambda *given: right(*given) * (1 + 1e-6))
+    right = low_rank.row_weights
+    monkeypatch.setattr(evaluate, "row_weights", lambda *given: right(*given) * (1 + 1e-6))
     spoiled = bp.field(slab, beam, 2500.0, x, z)
     monkeypatch.setattr(evaluate, "MANY_PLANES", 10**9)
     np.testing.assert_array_equal(spoiled.p, bp.field(slab, beam, 2500.0, x, z).p)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from typing import Any
 
@@ -9,12 +10,14 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..contour.error import uniform_budget
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import measures
+from ..profiles.power import PowerError
 from ..progress import Progress, watched
 from ..response.sampled_slab import sample
-from ..sources.base import Beam, moved_to_origin
+from ..sources.base import Beam
 from . import checks
 
 SIDES = ("reflected", "transmitted")
@@ -41,7 +44,7 @@ def beam_measures(
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
     rtol : float
-        Asked error of the fields over their largest |p|.
+        Requested error of the fields over their largest |p|.
     progress : function
         Wraps the list of (frequency, angle) pairs that is worked through.
     window : float, optional, m
@@ -86,34 +89,31 @@ def beam_measures(
     True
     """
     validate.flag_or_function(progress, "progress")
-    validate.instance(slab, Slab, "slab")
-    validate.instance(beam, Beam, "beam")
-    f = validate.axis(frequency, "frequency", positive=True)
-    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
     half = None if window is None else validate.as_number(window, "window", positive=True)
-    flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
-    memory.check_table(flat.size * flat_angles.size, 280.0)
-    table = {name: np.full((flat.size, flat_angles.size, 2), np.nan) for name in measures.Beamlet._fields}
-    worst, worst_power = 0.0, 0.0
-    source, origin = moved_to_origin(beam)
-    each = [(i, j) for i in range(flat.size) for j in range(flat_angles.size)]
+    flat, angles = beams.flat
+    memory.check_table(flat.size * angles.size, 280.0)
+    table = {name: np.full((flat.size, angles.size, 2), np.nan) for name in measures.Beamlet._fields}
+    worst, worst_power = uniform_budget(1, 0.0), PowerError()
+    each = list(itertools.product(range(flat.size), range(angles.size)))
     for i, j in watched(progress, each, "beams"):
         s = sample(slab, float(flat[i]))
-        both = measures.reflected_and_transmitted(s, source.at_angle(float(flat_angles[j])), rtol, half)
-        for side, (beamlet, error, of_power) in enumerate(both):
-            worst, worst_power = max(worst, error), max(worst_power, of_power)
+        both = measures.reflected_and_transmitted(s, beams.source.at_angle(float(angles[j])), beams.rtol, half)
+        for side, (beamlet, budget, of_power) in enumerate(both):
+            worst, worst_power = worst.worse(budget), max(worst_power, of_power, key=lambda error: error.total)
             for name, value in beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in PLACES:
-        table[name] += origin
-    checks.warn_if_inaccurate(worst, rtol)
-    checks.warn_if_inaccurate(worst_power, rtol, of="a power")
+        table[name] += beams.origin
+    checks.warn_if_inaccurate(worst, beams.rtol)
+    checks.warn_if_inaccurate(worst_power, beams.rtol, of="a power")
     _warn_of_windows(table, window is not None)
-    dims, pick = checks.dims(frequency=f, angle=angles)
-    coords = checks.coords(frequency=f, angle=angles) | {"side": (("side",), list(SIDES))}
+    checks.warn_of_crossings(int(table["crossings"].max()))
+    dims, pick = checks.dims(**beams.axes)
+    coords = checks.coords(**beams.axes) | {"side": (("side",), list(SIDES))}
     variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
     variables["crossings"] = (variables["crossings"][0], variables["crossings"][1].astype(int))
-    return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=rtol, window=half)
+    return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=beams.rtol, window=half)
 
 
 def _warn_of_windows(table: dict[str, np.ndarray], chosen: bool) -> None:
@@ -129,13 +129,6 @@ def _warn_of_windows(table: dict[str, np.ndarray], chosen: bool) -> None:
         warnings.warn(
             f"|p| falls to {rim:.2g} of its peak only, in the widest window tried: centroid, lateral_shift and second moment "
             "are those of moments_from to moments_to; choose a window",
-            RuntimeWarning,
-            stacklevel=3,
-        )
-    most = int(table["crossings"].max())
-    if most > 2:
-        warnings.warn(
-            f"the half level is met up to {most} times; widths are between the two places nearest to the peak",
             RuntimeWarning,
             stacklevel=3,
         )

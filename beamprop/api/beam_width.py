@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import warnings
 from typing import Any
 
@@ -9,13 +10,17 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..contour.error import uniform_budget
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import sections
 from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
-from ..sources.base import Beam, moved_to_origin
+from ..sources.base import Beam
 from . import checks
+
+#: Progress is shown between blocks of so many frequencies at one angle.
+FREQUENCIES_AT_A_TIME = 128
 
 
 def beam_width(
@@ -37,7 +42,7 @@ def beam_width(
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
     rtol : float
-        Asked error of the fields over their largest |p|.
+        Requested error of the fields over their largest |p|.
     air_distance : float, m, optional
         Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
     progress : bool or function
@@ -66,51 +71,38 @@ def beam_width(
     array([0.089805, 0.097446])
     """
     validate.flag_or_function(progress, "progress")
-    validate.instance(slab, Slab, "slab")
-    validate.instance(beam, Beam, "beam")
-    f = validate.axis(frequency, "frequency", positive=True)
-    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
-    flat, flat_angles = np.atleast_1d(f), np.atleast_1d(angles)
-    memory.check_table(flat.size * flat_angles.size, 60.0)
+    flat, angles = beams.flat
+    memory.check_table(flat.size * angles.size, 60.0)
     names = sections.Row._fields
-    table = {name: np.empty((flat.size, flat_angles.size)) for name in names}
-    most, worst = np.zeros(4, int), 0.0
-    source, origin = moved_to_origin(beam)
-    work = [
-        (rows, j)
-        for rows in np.array_split(np.arange(flat.size), -(-flat.size // 128))
-        for j in range(flat_angles.size)
-    ]
+    table = {name: np.empty((flat.size, angles.size)) for name in names}
+    most, worst = np.zeros(4, int), uniform_budget(1, 0.0)
+    blocks = np.array_split(np.arange(flat.size), -(-flat.size // FREQUENCIES_AT_A_TIME))
+    work = list(itertools.product(blocks, range(angles.size)))
     for rows, j in watched(progress, work, "widths"):
         s = sample_all(slab, flat[rows])
-        found, met, errors = sections.rows(s, source.at_angle(float(flat_angles[j])), rtol, air_distance)
+        row, met, budget = sections.rows(s, beams.source.at_angle(float(angles[j])), beams.rtol, air_distance)
         most = np.maximum(most, met.max(axis=1).astype(int))
-        worst = max(worst, float(errors.max()))
-        for name, values in found._asdict().items():
+        worst = worst.worse(budget)
+        for name, values in row._asdict().items():
             table[name][rows, j] = values
-    table["centroid_out"] += origin
-    checks.warn_if_inaccurate(worst, rtol)
+    table["centroid_out"] += beams.origin
+    checks.warn_if_inaccurate(worst, beams.rtol)
     missing = [name for name in names if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
-    if np.any(most > 2):
-        many = ", ".join(name for name, times in zip(names, most, strict=False) if times > 2)
-        warnings.warn(
-            f"the half level is met up to {most.max()} times; the widths are between the two places nearest to the peak: "
-            f"{many}",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-    dims, pick = checks.dims(frequency=f, angle=angles)
+    many = (name for name, times in zip(names, most, strict=False) if times > 2)
+    checks.warn_of_crossings(int(most.max()), ", ".join(many))
+    dims, pick = checks.dims(**beams.axes)
     return datasets.make(
         {n: (dims, v[pick]) for n, v in table.items()},
-        checks.coords(frequency=f, angle=angles),
+        checks.coords(**beams.axes),
         "beam_width",
         flat,
         slab=slab,
         beam=beam,
-        rtol=rtol,
+        rtol=beams.rtol,
         air_distance=air_distance,
     )

@@ -66,7 +66,7 @@ def bloch(
     if cell.thickness < validate.LEAST:  # phases of thinner cells underflow, and kz is the phase over the thickness
         raise ValueError(f"cell: expected a thickness of at least {validate.LEAST:g} m, got {cell.thickness:g}")
     f = validate.axis(frequency, "frequency", positive=True)
-    name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0)
+    name, value = checks.single_option(kx=kx, kx_over_k0=kx_over_k0)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 350.0)
     if np.iscomplexobj(axis):

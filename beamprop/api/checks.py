@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from .. import memory, validate
 from ..media.fluids import Fluid
 from ..media.structures import Slab
-from ..sources.base import Beam, sin_degrees
+from ..sources.base import Beam, moved_to_origin, sin_degrees
+
+if TYPE_CHECKING:
+    from ..contour.error import ErrorBudget
+    from ..profiles.power import PowerError
 
 
 class AccuracyWarning(UserWarning):
-    """An answer whose estimated error is above the asked rtol.
+    """An answer whose estimated error is above the requested rtol.
 
     Examples
     --------
@@ -26,22 +30,44 @@ class AccuracyWarning(UserWarning):
     """
 
 
-def warn_if_inaccurate(
-    error: float, rtol: float, stacklevel: int = 3, of: str = "the largest |p|", mostly: str = ""
-) -> None:
-    """Warn of an estimated error above rtol; `mostly` names its largest term where it is known."""
-    if error > rtol:
-        term = f", mostly: {mostly}" if mostly else ""
+def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "the largest |p|") -> None:
+    """Warn of an estimated error above rtol, with its largest term."""
+    total = float(np.max(error.total))
+    if total > rtol:
         warnings.warn(
-            f"estimated error {error:.1e} of {of}, above the asked rtol {rtol:.1e}{term}",
+            f"estimated error {total:.1e} of {of}, above the requested rtol {rtol:.1e}, mostly: {error.largest}",
             AccuracyWarning,
-            stacklevel=stacklevel,
+            stacklevel=3,
         )
 
 
-def angles(angle: Any, beam: Beam) -> np.ndarray:
-    """The asked angles of a beam [degree], its own by default."""
-    return validate.angles(beam.angle if angle is None else angle)
+class Beams(NamedTuple):
+    """What questions about beams share: checked arguments, axes as they were given (scalars stay scalars)."""
+
+    frequency: np.ndarray  #: Hz
+    angle: np.ndarray  #: degree, the beam's own by default
+    rtol: float
+    source: Beam  #: the beam, moved to the origin
+    origin: float  #: its place before [m]
+
+    @property
+    def axes(self) -> dict[str, np.ndarray]:
+        """frequency and angle."""
+        return {"frequency": self.frequency, "angle": self.angle}
+
+    @property
+    def flat(self) -> tuple[np.ndarray, np.ndarray]:
+        """frequency (F,) and angle (A,)."""
+        return np.atleast_1d(self.frequency), np.atleast_1d(self.angle)
+
+
+def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
+    """The arguments of a question about beams, or a ValueError that names the wrong one."""
+    validate.instance(slab, Slab, "slab")
+    validate.instance(beam, Beam, "beam")
+    f = validate.axis(frequency, "frequency", positive=True)
+    angles = validate.angles(beam.angle if angle is None else angle)
+    return Beams(f, angles, validate.rtol(rtol), *moved_to_origin(beam))
 
 
 def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:
@@ -57,8 +83,8 @@ def forward_k0(fluid: Fluid, frequency: np.ndarray, name: str) -> np.ndarray:
     return k.real
 
 
-def one_of(**options: Any) -> tuple[str, Any]:
-    """The one option that is given."""
+def single_option(**options: Any) -> tuple[str, Any]:
+    """The option that is given, by name and value."""
     given = {name: value for name, value in options.items() if value is not None}
     if len(given) != 1:
         raise ValueError(f"expected exactly one of {', '.join(options)}, got {', '.join(given) or 'none'}")
@@ -68,7 +94,7 @@ def one_of(**options: Any) -> tuple[str, Any]:
 def lateral(
     name: str, value: Any, k0_at: Any, frequency: np.ndarray, bytes_each: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The asked axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
+    """The requested axis and kx on (frequency, axis); k0_at is a function that is called only where it is needed.
 
     `bytes_each` is what the answer to one plane wave holds.
     """
@@ -96,7 +122,18 @@ def coords(**axes: np.ndarray) -> dict[str, tuple[tuple[str, ...], Any]]:
     return {n: ((n,) if a.ndim else (), a) for n, a in axes.items()}
 
 
-#: Relative errors of plane waves from which on a warning is due.
+def warn_of_crossings(most: int, names: str = "") -> None:
+    """Warn where |p| crosses the half level more than twice: which of its places a width lies between."""
+    if most > 2:
+        where = f": {names}" if names else ""
+        warnings.warn(
+            f"the half level is met up to {most} times; widths are between the two places nearest to the peak{where}",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
+#: Relative errors of plane waves from which on a warning is due: six digits, more than media are known to.
 WORTH_A_WARNING = 1e-6
 
 

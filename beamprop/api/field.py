@@ -12,6 +12,7 @@ from .. import memory, validate
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
+from . import checks
 from .field_question import checked_question, labelled
 from .field_variables import bytes_held, kinds, no_errors, powers, row_of
 
@@ -47,7 +48,7 @@ def field(
     period : float, m
         For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
     rtol : float
-        Asked error of the open field over the largest |p| of each plane, wherever on the plane that lies.
+        Requested error of the open field over the largest |p| of each plane, wherever on the plane that lies.
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of frequencies that is worked through.
 
@@ -101,5 +102,6 @@ def field(
         errors.add(i, slice(None), row.fill(slice(None), slice(None), {name: v[i] for name, v in values.items()}))
     if "power_through" in names:
         values["power_through"] = powers(question, errors)
-    errors.warn(question.rtol)
+    for budget, scale in errors.worst_by_scale:
+        checks.warn_if_inaccurate(budget, question.rtol, scale)
     return labelled(labels, errors.total, values)

@@ -12,7 +12,7 @@ from ..contour import sums
 from ..fields.question import FieldQuestion
 from ..io import datasets
 from ..media.structures import Slab
-from ..sources.base import Beam, moved_to_origin
+from ..sources.base import Beam
 from . import checks
 from .field_variables import checked_variables
 
@@ -55,22 +55,20 @@ def checked_question(
     variables: Any = ("p",),
 ) -> tuple[FieldQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument."""
-    validate.instance(slab, Slab, "slab")
-    validate.instance(beam, Beam, "beam")
-    f, xs, zs = validate.axis(frequency, "frequency", positive=True), validate.axis(x, "x"), validate.axis(z, "z")
-    angles, rtol = checks.angles(angle, beam), validate.rtol(rtol)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
+    xs, zs = validate.axis(x, "x"), validate.axis(z, "z")
     validate.word(boundary, "boundary", "open", "periodic")
     if np.min(zs) < beam.z0:
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
-    axes = {"frequency": f, "angle": angles, "z": zs, "x": xs}
-    flat_f, flat_angles, flat_z, positions = (np.atleast_1d(v) for v in axes.values())
-    source, origin = moved_to_origin(beam)
+    frequencies, angles = beams.flat
+    positions = np.atleast_1d(xs) - beams.origin
     if boundary == "periodic":
-        period = _period(period, positions - origin, source, slab, flat_f)
+        period = _period(period, positions, beams.source, slab, frequencies)
     elif period is not None:
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
-    question = FieldQuestion(slab, source, flat_f, flat_angles, flat_z, positions - origin, period, rtol)
-    return question, Labels(axes, slab, beam, boundary, period, rtol, checked_variables(variables))
+    question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
+    axes = beams.axes | {"z": zs, "x": xs}
+    return question, Labels(axes, slab, beam, boundary, period, beams.rtol, checked_variables(variables))
 
 
 def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import validate
-from ..contour.error import ErrorBudget, uniform_budget
+from ..contour.error import ErrorBudget
 from ..fields.question import FieldQuestion, Prepared, fill, prepare
 from ..profiles.plane_power import power_through_planes
+from ..profiles.power import PowerError
 from ..response.sampled_slab import sample
 from ..sources.angles import AngleInterpolation
-from . import checks
 
 #: What can be asked for, in the order of a dataset; "intensity" stands for both of its components.
 VARIABLES = ("p", "v_x", "v_z", "intensity_x", "intensity_z", "power_through")
@@ -89,40 +89,37 @@ def bytes_held(variables: tuple[str, ...]) -> tuple[int, int]:
 
 
 class Errors(NamedTuple):
-    """The errors of each variable on (frequency, angle), and its worst budget if that has terms."""
+    """The errors of each variable on (frequency, angle), and the terms of its worst one."""
 
     total: dict[str, np.ndarray]
-    worst: dict[str, ErrorBudget]
+    worst: dict[str, ErrorBudget | PowerError]
 
     def add(self, i: int, angles: slice, budgets: dict[str, ErrorBudget]) -> None:
         """Take those of a part at frequency i in: a beam's error is that of its worst part."""
         for name, budget in budgets.items():
             self.total[name][i, angles] = np.fmax(self.total[name][i, angles], budget.total)
-            self.worst[name] = self.worst[name].worse(budget)
+            worst = self.worst.get(name)
+            self.worst[name] = worst.worse(budget) if isinstance(worst, ErrorBudget) else budget.worst
 
-    def warn(self, rtol: float) -> None:
-        """Warn of each variable whose error is above rtol, with its largest term."""
-        for name, error in self.total.items():
-            budget = self.worst.get(name)
-            worst = float(np.nanmax(error, initial=0.0)) if budget is None else float(budget.total[0])
-            mostly = "" if budget is None else budget.largest
-            checks.warn_if_inaccurate(worst, rtol, stacklevel=4, of=SCALES[name], mostly=mostly)
+    @property
+    def worst_by_scale(self) -> list[tuple[ErrorBudget | PowerError, str]]:
+        """The worst error of each variable, and what it is relative to."""
+        return [(self.worst[name], SCALES[name]) for name in self.total if name in self.worst]
 
 
 def no_errors(variables: tuple[str, ...], shape: tuple[int, ...]) -> Errors:
     """Those before anything is known: nan."""
-    return Errors(
-        {name: np.full(shape[:2], np.nan) for name in variables},
-        {name: uniform_budget(1, 0.0) for name in kinds(variables)},
-    )
+    return Errors({name: np.full(shape[:2], np.nan) for name in variables}, {})
 
 
 def powers(question: FieldQuestion, errors: Errors) -> np.ndarray:
     """Power through the planes of a question on (frequency, angle, z) [W/m], with its errors."""
-    power, error = np.empty(question.shape[:3]), errors.total["power_through"]
+    name, power = "power_through", np.empty(question.shape[:3])
     for i, frequency in enumerate(question.frequency):
         s = sample(question.slab, float(frequency), backward=True)
         for j, angle in enumerate(question.angle):
             source = AngleInterpolation(question.source, question.angle).at(float(angle))
-            power[i, j], error[i, j] = power_through_planes(s, source, question.z, question.rtol, question.period)
+            power[i, j], error = power_through_planes(s, source, question.z, question.rtol, question.period)
+            errors.total[name][i, j] = error.total
+            errors.worst[name] = max(error, errors.worst.get(name, error), key=lambda e: float(np.max(e.total)))
     return power

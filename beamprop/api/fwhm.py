@@ -9,6 +9,7 @@ import xarray as xr
 
 from .. import validate
 from ..profiles import fwhm as profile_width
+from . import checks
 
 
 def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> xr.DataArray:
@@ -49,17 +50,10 @@ def fwhm(profile: xr.DataArray, dim: str = "x", width_of: str = "pressure") -> x
 
     rows = ordered.transpose(..., dim)
     measured = profile_width.of_samples(x, rows.values.reshape(-1, x.size), profile_width.HALF_LEVEL[width_of])
-    one_sample = rows.drop_vars([name for name, c in rows.coords.items() if dim in c.dims]).isel({dim: 0})
-    out = one_sample.copy(data=measured.width.reshape(rows.shape[:-1]))
-    crossings = int(measured.crossings.max(initial=0))
+    first_sample = rows.drop_vars([name for name, c in rows.coords.items() if dim in c.dims]).isel({dim: 0})
+    out = first_sample.copy(data=measured.width.reshape(rows.shape[:-1]))
     if np.any(np.isnan(out)):
         warnings.warn("fwhm: the half level is not reached inside the window: nan", RuntimeWarning, stacklevel=2)
-    if crossings > 2:
-        warnings.warn(
-            f"fwhm: the half level is met up to {crossings} times; the width is between the two places nearest to "
-            "the peak",
-            RuntimeWarning,
-            stacklevel=2,
-        )
+    checks.warn_of_crossings(int(measured.crossings.max(initial=0)))
     out.attrs = {"units": profile[dim].attrs.get("units", "m"), "long_name": "full width at half maximum"}
     return out.rename("fwhm")

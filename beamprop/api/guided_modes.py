@@ -63,12 +63,12 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
     strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
     flat = np.atleast_1d(f)
-    found = [_modes_at(slab, float(g), highest, strip) for g in flat]
-    most = max(len(rows) for rows, _ in found)
+    answers = [_modes_at(slab, float(g), highest, strip) for g in flat]
+    most = max(len(modes) for modes, _ in answers)
     kx = np.full((flat.size, most), complex(np.nan, np.nan))
     direction, (residual, error) = np.zeros(kx.shape, int), np.full((2, *kx.shape), np.nan)
-    for i, (rows, _) in enumerate(found):
-        for j, mode in enumerate(rows):
+    for i, (modes, _) in enumerate(answers):
+        for j, mode in enumerate(modes):
             kx[i, j], direction[i, j], residual[i, j], error[i, j] = mode
     if most:
         checks.warn_of_plane_waves(np.nan_to_num(error, nan=0.0), flat, "mode", np.arange(most))
@@ -81,7 +81,7 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
         "direction": (both, direction[pick]),
         "residual": (both, residual[pick]),
         "error_estimate": (both, error[pick]),
-        "count": (dims, np.array([total for _, total in found])[pick]),
+        "count": (dims, np.array([total for _, total in answers])[pick]),
     }
     coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
     return datasets.make(
@@ -95,13 +95,13 @@ CLOSED = 1e-3
 
 def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
     """The modes of all parts of a slab at one frequency, by Re kx, and how many the argument principle counts."""
-    found, total = [], 0
+    modes, total = [], 0
     for part, times in sample(slab, frequency).parts_between_walls():
         own, count = _modes_of(part, frequency, highest, strip)
         memory.check("slab", 400.0 * (total + times * count), "the modes of all its parts", "take fewer periods")
-        found += times * own
+        modes += times * own
         total += times * count
-    return sorted(found, key=lambda mode: mode.kx.real), total
+    return sorted(modes, key=lambda mode: mode.kx.real), total
 
 
 def _modes_of(s: SampledSlab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
@@ -112,7 +112,7 @@ def _modes_of(s: SampledSlab, frequency: float, highest: float, strip: float) ->
         )
     most = memory.most_values()
     try:
-        found, total = guided.find_modes(
+        modes, total = guided.find_modes(
             s, argument_principle.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0), most
         )
     except argument_principle.TooManyValues:
@@ -129,9 +129,9 @@ def _modes_of(s: SampledSlab, frequency: float, highest: float, strip: float) ->
             f"kx_over_k0_max: expected a strip in which modes can be counted, got {counts} modes at {frequency} Hz; "
             "one may lie on the edge of the strip: change it a little"
         ) from None
-    if len(found) != total:
+    if len(modes) != total:
         raise ValueError(
-            f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(found)} found; "
+            f"kx_over_k0_max: {total} modes were counted at {frequency} Hz and {len(modes)} found; "
             "one may lie on the edge of the strip: change it a little"
         )
-    return found, total
+    return modes, total

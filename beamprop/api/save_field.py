@@ -16,10 +16,11 @@ from ..media.structures import Slab
 from ..memory import check_field
 from ..progress import Progress, watched
 from ..sources.base import Beam
+from . import checks
 from .field_question import checked_question, labelled
 from .field_variables import bytes_held, kinds, no_errors, powers, row_of
 
-#: The largest chunk of a file [bytes].
+#: The largest chunk of a file [bytes]: 16 MB, what a reader holds for one value of it, and what compresses at a time.
 CHUNK = 2**24
 #: Of a complex number [bytes].
 SIZE = 16
@@ -113,7 +114,8 @@ def save_field(
     sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
     chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
     save_blocks(path, values, sizes, chunks, blocks(), lambda: labelled(labels, errors.total, rest))
-    errors.warn(question.rtol)
+    for budget, scale in errors.worst_by_scale:
+        checks.warn_if_inaccurate(budget, question.rtol, scale)
     return labelled(labels, errors.total, rest)
 
 
@@ -122,6 +124,6 @@ def _block(shape: tuple[int, ...], memory: float, size: int) -> tuple[tuple[int,
     _, angles, planes, points = shape
     row = max(size, SIZE) * points
     many = max(1, min(angles, int(memory // row)))
-    few = max(1, min(planes, int(memory // (row * many))))
-    chunk = max(1, min(few, int(CHUNK // (row * many))))
-    return (many, few // chunk * chunk), (many, chunk)
+    held = max(1, min(planes, int(memory // (row * many))))
+    chunk = max(1, min(held, int(CHUNK // (row * many))))
+    return (many, held // chunk * chunk), (many, chunk)

@@ -69,7 +69,7 @@ def scattering(
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
-    name, value = checks.one_of(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
+    name, value = checks.single_option(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
     names = WAVES + (ERRORS if estimate else ())
@@ -82,7 +82,7 @@ def scattering(
     if estimate:
         checks.warn_of_plane_waves(variables["error_estimate"], flat, name, np.atleast_1d(axis))
     coords = checks.coords(frequency=f, **{name: axis})
-    coords |= _other_coords(slab, name, k, flat, dims, pick)
+    coords |= _derived_coords(slab, name, k, flat, dims, pick)
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
 
 
@@ -102,7 +102,7 @@ def _blocks(shape: tuple[int, int]) -> Iterator[tuple[slice, slice]]:
 
 
 def _answer(slab: Slab, frequency: np.ndarray, kx: np.ndarray, name: str, estimate: bool) -> tuple[np.ndarray, ...]:
-    """The variables of `WAVES` at some frequencies and kx, and those of `ERRORS` if asked for, (F, n) each."""
+    """The variables of `WAVES` at frequencies (F,) and kx (F, n), and with `estimate` those of `ERRORS`: (F, n) each."""
     before, after = slab.before.at(frequency), slab.after.at(frequency)
     omega = 2 * np.pi * frequency[:, None]
     res, errors = _solved(slab, frequency, omega, kx, estimate)
@@ -142,13 +142,13 @@ def _energies(
     return T, 1 - reflectivity - T
 
 
-def _other_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, dims: tuple, pick: tuple) -> dict:
+def _derived_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray, dims: tuple, pick: tuple) -> dict:
     """kx and kx_over_k0 (and the angle, when that was given) as coordinates on the axis."""
-    others: dict[str, Any] = {}
+    derived: dict[str, Any] = {}
     if name != "kx":
         fixed = frequency.size == 1 or np.array_equal(k, np.broadcast_to(k[:1], k.shape))
-        others["kx"] = (dims, k[pick]) if not fixed else (dims[-1:] if pick[1] != 0 else (), k[0][pick[1]])
+        derived["kx"] = (dims, k[pick]) if not fixed else (dims[-1:] if pick[1] != 0 else (), k[0][pick[1]])
     k0 = slab.before.wavenumber(frequency).real
     if name != "kx_over_k0" and np.all(np.isfinite(k0) & (k0 > 0)):
-        others["kx_over_k0"] = (dims, (k / k0[:, None])[pick])
-    return others
+        derived["kx_over_k0"] = (dims, (k / k0[:, None])[pick])
+    return derived

@@ -125,8 +125,8 @@ def _dataset(
         b=b.attrs.get("provenance"),
         **settings,
     )
-    others = {n: c.variable for n, c in p.coords.items() if n not in known and set(c.dims) <= set(p.dims)}
-    ds = ds.assign_coords(others)
+    further = {n: c.variable for n, c in p.coords.items() if n not in known and set(c.dims) <= set(p.dims)}
+    ds = ds.assign_coords(further)
     for name, variable in ds.data_vars.items():
         if COMPARISON[str(name)][0] == "Pa":
             variable.attrs["units"] = unit or "1"

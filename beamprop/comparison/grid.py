@@ -10,7 +10,7 @@ import xarray as xr
 from ..io.comsol import PRESSURE_UNITS, plain_unit
 from .resample import resample
 
-#: Positions that differ by less than this share of the span are the same.
+#: Positions that differ by less than this share of the span are the same: files print ten digits and more of them.
 SAME_POSITION = 1e-9
 #: Frequencies and angles of files are rounded to five digits.
 ROUNDED = 1e-4

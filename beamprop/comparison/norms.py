@@ -42,8 +42,8 @@ def norm(p: np.ndarray, w: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> np.n
 def best_scale(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> np.ndarray:
     """The complex factor that brings b nearest to a."""
     (a, of_a), (b, of_b) = _scaled_down(a), _scaled_down(b)
-    near_one = _divide((w * np.conj(b) * a).sum((-2, -1)), (w * np.abs(b) ** 2).sum((-2, -1)))
-    return near_one * (of_a / of_b).squeeze((-2, -1))
+    scaled = _divide((w * np.conj(b) * a).sum((-2, -1)), (w * np.abs(b) ** 2).sum((-2, -1)))
+    return scaled * (of_a / of_b).squeeze((-2, -1))
 
 
 def relative_l2(a: np.ndarray, b: np.ndarray, w: np.ndarray, axes: tuple[int, ...] = (-2, -1)) -> np.ndarray:

@@ -11,7 +11,7 @@ from ..io import datasets
 from .grid import SAME_POSITION
 from .norms import norm, scaled_misfit
 
-#: Misfits below this are no question of a sign convention.
+#: Misfits below this are no question of a sign convention: fields that fit so well have the right one, or no direction.
 NOTICEABLE = 1e-3
 
 
@@ -35,9 +35,13 @@ def warn_of_conjugate(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> bool:
     return better
 
 
+#: Errors of interpolation below this are not warned of: less than finite elements of the default size err.
+TOLERATED = 3e-4
+
+
 def warn_of_interpolation(between: float, error: np.ndarray) -> None:
     """Warn where the interpolation of b, error `between`, makes much of the relative error of the comparison."""
-    if between > 3e-4 and between > 0.3 * np.max(error, initial=0.0, where=np.isfinite(error)):
+    if between > TOLERATED and between > 0.3 * np.max(error, initial=0.0, where=np.isfinite(error)):
         warnings.warn(
             f"b's points do not resolve its field: interpolating it makes a relative error of about "
             f"{between:.2g}; compare on the same x and z",

@@ -75,12 +75,12 @@ def transform(strip: Strip, kx: np.ndarray) -> np.ndarray:
     return C / strip.period
 
 
-def ends(strip: Strip, slab: Slab, frequency: float, found: Orders) -> Ends:
+def ends(strip: Strip, slab: Slab, frequency: float, incident_orders: Orders) -> Ends:
     """The boundary operators and the beam's injection."""
-    C = transform(strip, found.kx)
-    near = 1j * found.before / complex(slab.before.at(frequency).rho_z)
-    far = 1j * found.after / complex(slab.after.at(frequency).rho_z)
-    source = strip.period * C @ (2 * near * found.incident)
+    C = transform(strip, incident_orders.kx)
+    near = 1j * incident_orders.before / complex(slab.before.at(frequency).rho_z)
+    far = 1j * incident_orders.after / complex(slab.after.at(frequency).rho_z)
+    source = strip.period * C @ (2 * near * incident_orders.incident)
     normal, rho = half_space_kz(slab.before, frequency, np.zeros(1))
     return Ends(
         strip.period * (C * near) @ C.conj().T,

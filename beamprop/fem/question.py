@@ -1,4 +1,4 @@
-"""What is asked of the finite elements: `plan` says what a solve takes, `field` does it."""
+"""The questions to the finite elements: `plan` predicts what a solve takes, `field` does it."""
 
 from __future__ import annotations
 
@@ -20,8 +20,9 @@ from .task import Plan, Task, make_task, predict, wavenumber
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Field over incident field of an order above which a warning names a guided mode. Near 1 away from them; 290
-#: went with an error of 3e-4 and 4000 with one of 5e-2 (order 3, lossless, 20 periods of the paper's cell).
+#: Field over incident field of an order above which a warning names a guided mode. Near 1 away from them; 290 went with an error
+#: of 3e-4 and 4000 with one of 5e-2 (order 3, lossless, 20 periods of the paper's cell): it grows as the square, and leaves below
+#: this what `SIZE_OVER_WAVELENGTH` promises.
 GUIDED_GAIN = 300.0
 
 
@@ -63,8 +64,8 @@ def _check_window(task: Task) -> None:
     """Refuse or warn where the launched profile reaches out of the window."""
     half, centre = task.period / 2, task.beam.centre
     k0 = float(task.slab.before.wavenumber(task.frequency).real)
-    reach = min(half, task.beam.reach(1e-3))
-    inside = np.abs(task.beam.profile(centre + np.linspace(-reach, reach, 401), k0))
+    source = min(half, task.beam.reach(1e-3))
+    inside = np.abs(task.beam.profile(centre + np.linspace(-source, source, 401), k0))
     outside = np.linspace(half, 2 * half, 101)
     tail = np.abs(task.beam.profile(centre + np.concatenate([-outside, outside]), k0))
     share = float(tail.max() / max(inside.max(), tail.max()))
@@ -78,9 +79,9 @@ def _check_window(task: Task) -> None:
         warnings.warn(f"period: {message}; it overlaps with its own copies", stacklevel=3)
 
 
-def _warn_grazing(task: Task, found: boundary.Orders) -> None:
+def _warn_grazing(task: Task, orders: boundary.Orders) -> None:
     """An integer period in wavelengths: an order along the face of a half-space."""
-    for name, kz in (("before", found.before), ("after", found.after)):
+    for name, kz in (("before", orders.before), ("after", orders.after)):
         k = complex(getattr(task.slab, name).wavenumber(task.frequency))
         if not math.isfinite(abs(k)):
             continue
@@ -96,8 +97,8 @@ def _warn_grazing(task: Task, found: boundary.Orders) -> None:
 
 def _warn_unresolved(task: Task, count: int) -> None:
     """A beam with more orders than the mesh has."""
-    found = boundary.orders(task.slab, task.beam, task.frequency, task.period, 4 * count)
-    strength = np.abs(found.incident) ** 2
+    orders = boundary.orders(task.slab, task.beam, task.frequency, task.period, 4 * count)
+    strength = np.abs(orders.incident) ** 2
     beyond = math.sqrt((strength[: 3 * count].sum() + strength[5 * count + 1 :].sum()) / strength.sum())
     if beyond > 1e-2:
         warnings.warn(
@@ -107,10 +108,10 @@ def _warn_unresolved(task: Task, count: int) -> None:
         )
 
 
-def _warn_guided(task: Task, found: boundary.Orders, near: np.ndarray, far: np.ndarray) -> None:
+def _warn_guided(task: Task, orders: boundary.Orders, near: np.ndarray, far: np.ndarray) -> None:
     """An order beside a guided mode: it answers far above what drives it, and magnifies the mesh's error as much."""
-    answer = np.maximum(np.abs(near - found.incident), np.abs(far))
-    driven = np.abs(found.incident)
+    answer = np.maximum(np.abs(near - orders.incident), np.abs(far))
+    driven = np.abs(orders.incident)
     # beyond half of elements_x an order may be the mesh's image of a strong one, no answer to its own drive
     matters = np.abs(np.arange(driven.size) - driven.size // 2) <= 0.5 * task.elements_x
     matters &= (driven > 1e-12 * driven.max()) & (answer > 1e-5 * driven.max())
@@ -119,7 +120,7 @@ def _warn_guided(task: Task, found: boundary.Orders, near: np.ndarray, far: np.n
     if gain[m] > GUIDED_GAIN:
         k0 = wavenumber(task.slab, task.frequency)
         warnings.warn(
-            f"period: the order {m - gain.size // 2:+d} at kx = {found.kx[m] / k0:.5f} k0 lies beside a guided mode "
+            f"period: the order {m - gain.size // 2:+d} at kx = {orders.kx[m] / k0:.5f} k0 lies beside a guided mode "
             f"of the slab, its field is {gain[m]:.3g} times the incident one; the result is sensitive there, "
             "choose another period or a higher order",
             stacklevel=3,
@@ -129,18 +130,18 @@ def _warn_guided(task: Task, found: boundary.Orders, near: np.ndarray, far: np.n
 # --- the question -----------------------------------------------------------------------------------------
 
 
-def _check_memory(found: Plan, memory_limit: float) -> None:
-    if found.memory > memory_limit:
+def _check_memory(expected: Plan, memory_limit: float) -> None:
+    if expected.memory > memory_limit:
         raise ValueError(
-            f"memory_limit: expected at least {found.memory:.3g} bytes for {found.dofs} unknowns "
-            f"({found.elements_x} x {found.elements_z} elements, about {found.seconds:.3g} s), got {memory_limit:.3g}"
+            f"memory_limit: expected at least {expected.memory:.3g} bytes for {expected.dofs} unknowns "
+            f"({expected.elements_x} x {expected.elements_z} elements, about {expected.seconds:.3g} s), got {memory_limit:.3g}"
         )
 
 
 def _evaluate(
     task: Task,
     mesh: strip.Strip,
-    found: boundary.Orders,
+    orders: boundary.Orders,
     solution: np.ndarray,
     C: np.ndarray,
     x: np.ndarray,
@@ -151,12 +152,12 @@ def _evaluate(
     near, far = C.conj().T @ solution[0], C.conj().T @ solution[-1]
     front, behind = z <= 0, z >= thickness
     inside = ~(front | behind)
-    amplitudes = np.zeros((z.size, found.kx.size), dtype=complex)
-    amplitudes[front] = found.launched * np.exp(1j * np.multiply.outer(z[front] - task.beam.z0, found.before))
-    amplitudes[front] += (near - found.incident) * np.exp(-1j * np.multiply.outer(z[front], found.before))
-    amplitudes[behind] = far * np.exp(1j * np.multiply.outer(z[behind] - thickness, found.after))
+    amplitudes = np.zeros((z.size, orders.kx.size), dtype=complex)
+    amplitudes[front] = orders.launched * np.exp(1j * np.multiply.outer(z[front] - task.beam.z0, orders.before))
+    amplitudes[front] += (near - orders.incident) * np.exp(-1j * np.multiply.outer(z[front], orders.before))
+    amplitudes[behind] = far * np.exp(1j * np.multiply.outer(z[behind] - thickness, orders.after))
     p = np.empty((z.size, x.size), dtype=complex)
-    p[~inside] = amplitudes[~inside] @ np.exp(1j * np.multiply.outer(found.kx, x))
+    p[~inside] = amplitudes[~inside] @ np.exp(1j * np.multiply.outer(orders.kx, x))
     p[inside] = (strip.along_x(mesh, x) @ strip.lines_at(mesh, task.rows, solution, z[inside]).T).T
     return p
 
@@ -166,10 +167,10 @@ def _solve(
 ) -> tuple[strip.Strip, boundary.Orders, boundary.Ends, np.ndarray, float]:
     """The mesh, the orders, the open sides, the solution and its residual."""
     mesh = strip.make_strip(task.period, task.beam.centre - task.period / 2, task.order, task.elements_x)
-    found = boundary.orders(task.slab, task.beam, task.frequency, task.period, (mesh.n - 1) // 2)
-    ends = boundary.ends(mesh, task.slab, task.frequency, found)
+    orders = boundary.orders(task.slab, task.beam, task.frequency, task.period, (mesh.n - 1) // 2)
+    ends = boundary.ends(mesh, task.slab, task.frequency, orders)
     solution = solvers.SOLVERS[task.method](mesh, task.segments, task.rows, ends, task.omega, steps)
-    return mesh, found, ends, solution, solvers.residual(mesh, task.rows, ends, task.omega, solution)
+    return mesh, orders, ends, solution, solvers.residual(mesh, task.rows, ends, task.omega, solution)
 
 
 def field(
@@ -270,12 +271,12 @@ def field(
     _check_memory(expected, validate.as_number(memory_limit, "memory_limit", positive=True))
     _check_window(task)
     steps = Steps(progress, solvers.step_count(task.segments, task.method), "finite elements")
-    mesh, found, ends, solution, residual = _solve(task, steps.step)
+    mesh, orders, ends, solution, residual = _solve(task, steps.step)
     steps.close()
-    _warn_grazing(task, found)
-    _warn_unresolved(task, found.kx.size // 2)
+    _warn_grazing(task, orders)
+    _warn_unresolved(task, orders.kx.size // 2)
     C = ends.transform
-    _warn_guided(task, found, C.conj().T @ solution[0], C.conj().T @ solution[-1])
+    _warn_guided(task, orders, C.conj().T @ solution[0], C.conj().T @ solution[-1])
     settings = {
         "period": task.period,
         "boundary": "periodic",
@@ -285,7 +286,7 @@ def field(
         "layer_rows": layer_rows,
     }
     ds = datasets.make(
-        {"p": (("z", "x"), _evaluate(task, mesh, found, solution, C, x, z))},
+        {"p": (("z", "x"), _evaluate(task, mesh, orders, solution, C, x, z))},
         {"z": (("z",), z), "x": (("x",), x), "frequency": ((), task.frequency), "angle": ((), float(beam.angle))},
         "fem.field",
         np.array([task.frequency]),
@@ -297,7 +298,7 @@ def field(
         settings,
         dofs=expected.dofs,
         elements_z=expected.elements_z,
-        orders=int(found.kx.size),
+        orders=int(orders.kx.size),
         slab_thickness=slab.thickness,
         residual=residual,
         seconds=time.perf_counter() - began,

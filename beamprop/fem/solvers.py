@@ -281,8 +281,8 @@ def _sparse_cost(segments: list[Segment], rows: Layout, n: int, order: int) -> t
     return 18 * dofs * n + 1e8, 8e-10 * dofs * n**2 + 0.1
 
 
-#: Predicted memory [bytes] and time [s] from segments, layout, unknowns on a line and order; measured on one
-#: core.
+#: Predicted memory [bytes] and time [s] from segments, layout, unknowns on a line and order; measured on one core by
+#: experiments/benchmarks/constants.py COSTS.
 COSTS: dict[str, Callable[..., tuple[float, float]]] = {"superelement": _superelement_cost, "sparse": _sparse_cost}
 
 

@@ -27,7 +27,8 @@ from scipy import sparse
 
 from ..media.structures import Cell, Layer, Membrane, Slab
 
-#: Element size along x and z over the wavelength that gives an error of some 1e-4 to 1e-3, by order.
+#: Element size along x and z over the wavelength that gives an error of some 1e-4 to 1e-3, by order; experiments/fem_convergence.py
+#: measures it.
 SIZE_OVER_WAVELENGTH = {1: 0.05, 2: 0.1, 3: 0.2, 4: 0.3}
 
 
@@ -179,7 +180,7 @@ def _line_mass(x: np.ndarray, order: int) -> sparse.csr_matrix:
     basis = line_basis(x, order, 2 * order)
     dofs = line_dofs(order, x.size - 1)
     fold = sparse.csr_matrix((np.ones(dofs.size), (basis.element_dofs.ravel(), dofs.ravel())))
-    fold.data[:] = 1.0  # a vertex stands in two elements
+    fold.data[:] = 1.0  # a vertex belongs to two elements
     return (fold.T @ fem.BilinearForm(lambda u, v, w: u * v).assemble(basis) @ fold).tocsr()
 
 
@@ -228,8 +229,8 @@ def slab_rows(slab: Slab, frequency: float, kx: float, order: int, least: int = 
     """
 
     def rows(cell: Cell) -> tuple[tuple[Row, int], ...]:
-        found = (_layer_rows(layer, frequency, kx, order, least) for layer in cell.layers)
-        return tuple(row for row in found if row is not None)
+        of_layers = (_layer_rows(layer, frequency, kx, order, least) for layer in cell.layers)
+        return tuple(row for row in of_layers if row is not None)
 
     return [(rows(cell), periods) for cell, periods in slab.segments]
 

@@ -1,13 +1,10 @@
-"""Spectrum x response -> p(z, x): the sums over a line that was chosen.
-
-Everything here is for one frequency; a `SampledSlab` holds what does not change from line to line.
-"""
+"""Spectrum x response -> p(z, x): the sums over the plane waves of a contour that was chosen, at one frequency."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,11 +17,30 @@ from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, single
 from ..sources.base import Beam
-from .low_rank import cross, mixing
+from .low_rank import cross, row_weights
+
+
+class Superposition(NamedTuple):
+    """Beams at positions x (X,), as sums of the plane waves of a contour."""
+
+    k0: float
+    sources: AngleInterpolation
+    quadrature: Quadrature
+    x: np.ndarray
+
+    @property
+    def amplitudes(self) -> tuple[np.ndarray, np.ndarray]:
+        """w S(k) and w S(-k) of the beams that are summed, about their middle: (B, n) each."""
+        return self.quadrature.amplitudes_of(self.k0, self.sources)
+
+    @property
+    def off_centre(self) -> np.ndarray:
+        """x from the beams' middle (X,)."""
+        return self.x - self.sources.beam.centre
 
 
 def evaluator(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """p at any x on the one plane of h: plane waves are solved and their amplitudes formed once, whatever is asked then."""
+    """p at any x on the one plane of h; amplitudes are formed once, for all x."""
     right, left = quadrature.amplitudes_of(s.k0, single(beam))
     return lambda at: np.asarray(sums.direct_sum(quadrature.contour, h, right[0], left[0], at - beam.centre))[0]
 
@@ -32,41 +48,47 @@ def evaluator(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray)
 def beam_sum(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray, x: np.ndarray) -> np.ndarray:
     """p(z, x) of one beam by whichever of FFT and matrix product is cheaper."""
     out = np.empty((1, h.shape[0], x.size), complex)
-    fill(s, single(beam), quadrature, h, x, out)
+    fill(Superposition(s.k0, single(beam), quadrature, x), h, out)
     return out[0]
 
 
-#: Up to so many planes, sums by tables take less than exponentials that all planes share.
-FEW_PLANES = 4
+# The constants of this file are measured again by experiments/benchmarks/constants.py.
+
+#: Up to so many planes of one beam, sums by tables take less (to a third) than exponentials that all planes share.
+TABLE_PLANES = 16
+#: Up to so many planes, all beams share exponentials in one product, whose operand is h times the number of beams; with more planes
+#: that would be large, and exponentials are a small part of a product.
+PLANES_OF_A_BEAM = 64
 
 
-def fill(
-    s: SampledSlab, sources: AngleInterpolation, quadrature: Quadrature, h: np.ndarray, x: np.ndarray, out: np.ndarray
-) -> None:
-    """p(z, x) of all requested beams into out (A, Z, X), of which (Z, X) must be contiguous."""
-    contour, n = quadrature.contour, quadrature.fft
-    right, left = quadrature.amplitudes_of(s.k0, sources)
-    x = x - sources.beam.centre
-    fast = n and fft_is_cheaper(n, contour.k.size, x.size)
+def fill(waves: Superposition, h: np.ndarray, out: np.ndarray) -> None:
+    """p(z, x) of all requested beams into out (A, Z, X), of which (Z, X) must be contiguous; h is (Z, n)."""
+    sources, contour, n = waves.sources, waves.quadrature.contour, waves.quadrature.fft
+    (right, left), x = waves.amplitudes, waves.off_centre
+    single_beam = len(right) == 1
+    grid = sums.grid_of(x) if n and fft_is_cheaper(n, contour.k.size, x.size) else None
     if sources.weights is not None:
         summed = (
-            sums.grid_sum(contour, h, right, left, sums.grid_of(x), n)
-            if fast
-            else sums.direct_sum(contour, h, right, left, x)
+            sums.direct_sum(contour, h, right, left, x)
+            if grid is None
+            else sums.grid_sum(contour, h, right, left, grid, n)
         )
         _check_finite(summed)
         sources.interpolated_to(summed, out)
         return
-    if fast:
-        grid = sums.grid_of(x)
+    if grid is not None:
         for a, b, into in zip(right, left, out, strict=True):
             sums.grid_sum(contour, h, a, b, grid, n, into)
-    elif h.shape[0] <= FEW_PLANES and x.size >= exponentials.MANY and (step := exponentials.even_step(x)):
-        for a, b, into in zip(right, left, out, strict=True):
-            into[...] = exponentials.over_waves(contour.k, a * h, float(x[0]), step, x.size)
-            if np.any(b):
-                into += exponentials.over_waves(-contour.k, b * h, float(x[0]), step, x.size)
-    elif len(right) == 1 or h.shape[0] > 64:
+    elif (
+        single_beam
+        and h.shape[0] <= TABLE_PLANES
+        and x.size >= exponentials.MANY
+        and (step := exponentials.even_step(x))
+    ):
+        out[0] = exponentials.over_waves(contour.k, right * h, float(x[0]), step, x.size)
+        if np.any(left):
+            out[0] += exponentials.over_waves(-contour.k, left * h, float(x[0]), step, x.size)
+    elif single_beam or h.shape[0] > PLANES_OF_A_BEAM:
         for a, b, into in zip(right, left, out, strict=True):
             into[...] = sums.direct_sum(contour, h, a, b, x)
     else:
@@ -83,124 +105,102 @@ def _check_finite(p: np.ndarray) -> None:
         )
 
 
-#: From how many planes and positions on most planes are made of a few; and the most that are looked at together.
+#: A map is made from rows of low rank from so many planes on (of which at most half may be searched) and so many positions (with fewer,
+#: the response of the planes takes longer than their sums), so many planes at a time: (2048, n) of h at the chosen columns.
 MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
-#: Among how many planes the few are looked for, and in each medium at least; how many they may be; and how many others are
-#: summed in each medium to see that it is so.
-SEARCHED, IN_EACH, MOST_ROWS, TRIED = 90, 40, 48, 5
+#: Among how many planes the rows are chosen, and in each medium at least: about twice and once as many as may be chosen, which is a
+#: quarter of the fewest planes, since sums of more would save little; and on how many further planes in each medium the result is
+#: compared with their own sums.
+SEARCHED, IN_EACH, MOST_ROWS, COMPARED = 90, 40, 48, 5
+#: The worst of all planes may err by so many times the worst of those that are compared: experiments/accuracy.py counts the estimates
+#: below a third of the error, its maps of 250 planes and more apart.
+UNSEEN = 5
 
 
 def fill_map(
-    s: SampledSlab,
-    sources: AngleInterpolation,
-    quadrature: Quadrature,
-    transfer: TransferFunction,
-    z: np.ndarray,
-    x: np.ndarray,
-    out: np.ndarray,
-    rtol: float,
+    waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float
 ) -> np.ndarray:
     """p of all requested beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
 
-    Returns what the error of each beam, over the largest |p| of a plane, gains by planes that are made of others: (A,).
+    Returns the term of low rank in each beam's error, over the largest |p| of a plane: (A,).
     """
-    gained = np.zeros(out.shape[0])
+    low_rank = np.zeros(out.shape[0])
     for start in range(0, z.size, TOGETHER):
         part = slice(start, start + TOGETHER)
-        more: Any = None
-        if min(TOGETHER, z.size - start) >= MANY_PLANES and x.size >= MANY_POINTS:
-            more = _fill_low_rank(s, sources, quadrature, transfer, z[part], x, out[:, part], rtol)
-        if more is None:
-            more = _fill_all(s, sources, quadrature, transfer, z[part], x, out[:, part])
-        gained = np.maximum(gained, more)
-    return gained
+        error = None
+        if min(TOGETHER, z.size - start) >= MANY_PLANES and waves.x.size >= MANY_POINTS:
+            error = _fill_low_rank(waves, transfer, z[part], out[:, part], rtol)
+        if error is None:
+            _fill_all(waves, transfer, z[part], out[:, part])
+        else:
+            low_rank = np.maximum(low_rank, error)
+    return low_rank
 
 
-def _fill_all(
-    s: SampledSlab,
-    sources: AngleInterpolation,
-    quadrature: Quadrature,
-    transfer: TransferFunction,
-    z: np.ndarray,
-    x: np.ndarray,
-    out: np.ndarray,
-) -> float:
-    """Every plane by itself, in blocks: of the response, and with many angles of the fields that are mixed."""
-    k = quadrature.contour.k
-    row = max(1, k.size, 0 if sources.weights is None else sources.angles.size * x.size)
+def _fill_all(waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray) -> None:
+    """Every plane by itself, in blocks: of the response, and with many angles of the fields that are interpolated."""
+    k, sources = waves.quadrature.contour.k, waves.sources
+    row = max(1, k.size, 0 if sources.weights is None else sources.angles.size * waves.x.size)
     block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
     for start in range(0, z.size, block):
         rows = slice(start, start + block)
-        fill(s, sources, quadrature, transfer(k, z[rows]), x, out[:, rows])
-    return 0.0
+        fill(waves, transfer(k, z[rows]), out[:, rows])
 
 
-def _some_planes(s: SampledSlab, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Planes, as indices of z, that are spread over each medium, and some that lie between them."""
+def _spread_planes(faces: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Planes, as indices of z, that are spread over each medium, and planes between them to compare on."""
     order = np.argsort(z, kind="stable")
-    parts = np.split(order, np.searchsorted(z[order], s.faces))
-    searched, tried = [], []
-    for part in parts:
+    searched, compared = [], [np.empty(0, int)]
+    for part in np.split(order, np.searchsorted(z[order], faces)):
         if part.size:
             count = min(part.size, max(IN_EACH, SEARCHED * part.size // z.size))
-            turn = (1 - np.cos(np.linspace(0, np.pi, count))) / 2  # denser at the faces, where what decays is seen
+            turn = (1 - np.cos(np.linspace(0, np.pi, count))) / 2  # denser at the faces, where evanescent waves show
             at = np.unique(((part.size - 1) * turn).round().astype(int))
-            between = (at[:-1] + at[1:]) // 2
-            between = np.setdiff1d(between, at)
+            between = np.setdiff1d((at[:-1] + at[1:]) // 2, at)
             searched.append(part[at])
-            tried.append(
-                part[between[np.unique(np.linspace(0, between.size - 1, TRIED).astype(int))]] if between.size else []
-            )
-    return np.concatenate(searched), np.concatenate(tried).astype(int)
+            if between.size:
+                compared.append(part[between[np.unique(np.linspace(0, between.size - 1, COMPARED).astype(int))]])
+    return np.concatenate(searched), np.concatenate(compared)
 
 
 def _fill_low_rank(
-    s: SampledSlab,
-    sources: AngleInterpolation,
-    quadrature: Quadrature,
-    transfer: TransferFunction,
-    z: np.ndarray,
-    x: np.ndarray,
-    out: np.ndarray,
-    rtol: float,
+    waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float
 ) -> np.ndarray | None:
-    """Planes made of a few, found among some with all plane waves; None where that is not good enough.
+    """Planes as combinations of rows that are chosen among spread planes; None where that is not accurate enough.
 
-    That is seen on others, between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
+    The error is measured on planes between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
     """
-    k, x0 = quadrature.contour.k, x - sources.beam.centre
-    right, left = quadrature.amplitudes_of(s.k0, sources)
-    strength = np.max(np.abs(right) + np.abs(left), axis=0)
-    searched, tried = _some_planes(s, z)
+    quadrature, (right, left) = waves.quadrature, waves.amplitudes
+    k = quadrature.contour.k
+    searched, compared = _spread_planes(transfer.slab.faces, z)
     if quadrature.checked_planes is not None:  # among them those that are nearly dark, where small errors count
-        tried = np.union1d(tried, np.flatnonzero(np.isin(z, quadrature.checked_planes)))
+        compared = np.union1d(compared, np.flatnonzero(np.isin(z, quadrature.checked_planes)))
     if 2 * searched.size > z.size:
         return None
-    h = transfer(k, z[np.concatenate([searched, tried])])
+    h = transfer(k, z[np.concatenate([searched, compared])])
     with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode
-        weighted = h[: searched.size] * strength
+        weighted = h[: searched.size] * np.max(np.abs(right) + np.abs(left), axis=0)
         size = np.linalg.norm(weighted, axis=1)
     if not np.all((size > DARK) & np.isfinite(size)):
         return None
-    growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(x0)))
+    growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(waves.off_centre)))
     weighted /= size[:, None]
-    found = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
-    rows, columns = found.rows, found.columns
-    there = transfer(k[columns], z)
-    summed = np.empty((out.shape[0], rows.size + tried.size, x.size), complex)
-    fill(s, sources, quadrature, h[np.concatenate([rows, searched.size + np.arange(tried.size)])], x, summed)
-    ours, theirs = summed[:, : rows.size], summed[:, rows.size :]
-    scale = np.max(np.abs(theirs), axis=2)
+    chosen = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
+    rows, columns = chosen.rows, chosen.columns
+    at_columns = transfer(k[columns], z)
+    summed = np.empty((out.shape[0], rows.size + compared.size, waves.x.size), complex)
+    fill(waves, h[np.concatenate([rows, searched.size + np.arange(compared.size)])], summed)
+    of_rows, reference = summed[:, : rows.size], summed[:, rows.size :]
+    scale = np.max(np.abs(reference), axis=2)
     scale = np.where(scale > DARK, scale, np.inf)
-    room = rtol - quadrature.worst  # what the line has left of rtol, if it keeps it
+    room = rtol - quadrature.worst  # what the contour has left of rtol, if it keeps it
     allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
-    for count in sorted({found.within(2e-4 * rtol), rows.size}):  # mostly the growth is not met
+    for count in sorted({chosen.within(2e-4 * rtol), rows.size}):  # most fields are not magnified by the growth's bound
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
-            weights = mixing(there[:, :count], h[rows[:count]][:, columns[:count]])
-            for some, into in zip(ours, out, strict=True):
-                np.matmul(weights, some[:count], out=into)
-            # some planes stand for all: the worst of the others may be a few times worse
-            error = 5 * np.max(np.max(np.abs(out[:, tried] - theirs), axis=2) / scale, axis=1)
+            weights = row_weights(at_columns[:, :count], h[rows[:count]][:, columns[:count]])
+            for fields, into in zip(of_rows, out, strict=True):
+                np.matmul(weights, fields[:count], out=into)
+            error = UNSEEN * np.max(np.max(np.abs(out[:, compared] - reference), axis=2) / scale, axis=1)
         error = np.maximum(error, 3e-4 * rtol)
         if np.max(error) <= allowed:
             return error

@@ -1,9 +1,9 @@
-"""A field on many planes, made of those on a few.
+"""A field on many planes as combinations of rows, by the low rank of H(z, kx).
 
-The plane waves of a beam at one depth are a row of the matrix h(z, kx). Between two depths little happens to it: a medium has
-two waves for each kx, whose phases depend on kx smoothly. So all rows are combinations of a few of them, found by cross
-approximation: some tens for a beam that crosses ten wavelengths of air, ten for one in 450 periods whose contours are flat.
-The fields on those few planes are summed, all others are combinations of them.
+The plane waves of a beam at one depth are a row of the matrix H(z, kx). A medium has two waves for each kx, whose phases depend on
+kx smoothly, so that H has a low rank: some tens for a beam that crosses ten wavelengths of air, ten for 450 periods whose
+contours are flat. Cross approximation (M. Bebendorf, Numer. Math. 86, 565 (2000)) chooses rows and columns from which all
+rows follow. The fields on the planes of those rows are summed, all others are combinations of them.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ def cross(h: np.ndarray, tolerance: float, most: int) -> Cross:
     Gaussian elimination with complete pivoting; h is overwritten.
     """
     rows, columns, pivots = np.empty(most, int), np.empty(most, int), np.empty(most)
-    square, other = np.empty(h.shape), np.empty(h.shape)
+    square, imaginary = np.empty(h.shape), np.empty(h.shape)
     for r in range(most):
         np.square(h.real, out=square)
-        square += np.square(h.imag, out=other)
+        square += np.square(h.imag, out=imaginary)
         i, j = divmod(int(np.argmax(square)), h.shape[1])
         size = math.sqrt(square[i, j])
         if not size > tolerance:
@@ -45,10 +45,10 @@ def cross(h: np.ndarray, tolerance: float, most: int) -> Cross:
     return Cross(rows, columns, pivots)
 
 
-def mixing(h: np.ndarray, few: np.ndarray) -> np.ndarray:
-    """The matrix (Z, r) that makes all rows of the few: h (Z, r) and few (r, r) are both at the columns of `cross`.
+def row_weights(h: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """The matrix (Z, r) that makes all rows of the chosen ones: h (Z, r) and `chosen` (r, r) are both at the columns of `cross`.
 
-    That `few` is close to singular does not matter: what its inverse magnifies meets rows that are as small.
+    That `chosen` is close to singular does not matter: what its inverse magnifies meets rows that are as small.
     """
-    size = np.linalg.norm(few, axis=1)
-    return np.linalg.solve((few / size[:, None]).T, h.T).T / size
+    size = np.linalg.norm(chosen, axis=1)
+    return np.linalg.solve((chosen / size[:, None]).T, h.T).T / size

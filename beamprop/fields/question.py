@@ -73,8 +73,8 @@ def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> E
     Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
     """
     question, s, beams, transfer, quadrature = prepared
-    taken = beams.taken(angles)
-    added = evaluate.fill_map(s, taken, quadrature, transfer, question.z[planes], question.x, out, question.rtol)
+    waves = evaluate.Superposition(s.k0, beams.taken(angles), quadrature, question.x)
+    low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
     if question.period is not None:
-        return uniform_budget(added.size, np.nan)
-    return quadrature.budget.taken(angles)._replace(low_rank=added)
+        return uniform_budget(low_rank.size, np.nan)
+    return quadrature.budget.taken(angles)._replace(low_rank=low_rank)

@@ -1,4 +1,4 @@
-"""Dataset -> matplotlib Axes. Knows nothing of media: what it draws stands in the dataset.
+"""Dataset -> matplotlib Axes. Knows nothing of media: it draws what the dataset holds.
 
 Maps of |p| are drawn with a perceptual sequential map, Re p with a symmetric diverging one. Every function takes `ax` and
 returns the Axes it drew in, so that figures are put together outside.
@@ -117,15 +117,15 @@ def _lateral(ds: xr.Dataset) -> str:
 
 
 def _lines(ds: xr.Dataset, y: xr.DataArray, along: str, ax: Any, label: str | None) -> None:
-    """One curve per entry of the other dimension."""
-    others = [d for d in y.dims if d != along]
-    if not others:
+    """One curve per entry of the dimensions across."""
+    across = [d for d in y.dims if d != along]
+    if not across:
         ax.plot(ds[along], y, label=label)
         return
-    for i, row in enumerate(y.transpose(*others, along).values.reshape(-1, y.sizes[along])):
-        values = np.unravel_index(i, [y.sizes[d] for d in others])
+    for i, row in enumerate(y.transpose(*across, along).values.reshape(-1, y.sizes[along])):
+        values = np.unravel_index(i, [y.sizes[d] for d in across])
         text = ", ".join(
-            f"{d} {ds[d].values[j]:g} {ds[d].attrs.get('units', '')}" for d, j in zip(others, values, strict=True)
+            f"{d} {ds[d].values[j]:g} {ds[d].attrs.get('units', '')}" for d, j in zip(across, values, strict=True)
         )
         ax.plot(ds[along], row, label=text if label is None else f"{label}, {text}")
 

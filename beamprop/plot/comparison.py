@@ -71,8 +71,8 @@ def _figure(ds: xr.Dataset, maps: bool) -> Sequence[Any]:
     figure = plt.figure(figsize=(_WIDTH, height + 3.2), layout="constrained")
     grid = figure.add_gridspec(2, 6, height_ratios=[height + 0.6, 2.2])
     first = figure.add_subplot(grid[0, :2])
-    others = [figure.add_subplot(grid[0, k : k + 2], sharex=first, sharey=first) for k in (2, 4)]
-    return [first, *others, figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:])]
+    further = [figure.add_subplot(grid[0, k : k + 2], sharex=first, sharey=first) for k in (2, 4)]
+    return [first, *further, figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:])]
 
 
 def _proportion(ds: xr.Dataset) -> float:

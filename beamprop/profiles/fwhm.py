@@ -10,16 +10,17 @@ import numpy as np
 #: Level of |p| at half maximum, by what the width is of.
 HALF_LEVEL = {"pressure": 0.5, "intensity": np.sqrt(0.5)}
 
-#: Positions by which the interval between two samples is looked at before the search inside.
+#: Positions at which p is evaluated between two samples before the search there: a cubic spline's |p|^2 is of degree six, with at
+#: most three maxima in the interval, which 16 steps tell apart.
 SUBSAMPLES = 17
 #: Parabolas through |p| by which the peak is placed, each this many times narrower than the one before. The error of a vertex goes
 #: with the square of the parabola's width: 1e-8 samples after three, and |p| is flat there.
 PARABOLAS, NARROWER = 3, 16
-#: How far the edges are known, over the interval of samples in which they lie.
+#: How far the edges are known, over the interval of samples in which they lie: 1e-12 of a width of ten samples.
 EDGE_TOLERANCE = 1e-11
-#: Bisection alone gets from an interval of samples to that tolerance in 37 steps.
+#: Bisection alone gets from an interval of samples to that tolerance in log2(1e11) = 37 steps; interpolation that fails takes more.
 MOST_STEPS = 60
-#: Samples of profiles that are interpolated at a time: their splines take 64 bytes each.
+#: Samples of profiles that are interpolated at a time: their splines take 64 bytes each, 64 MB.
 MOST_SAMPLES = 2**20
 
 #: Positions (..., m) of each profile -> p there, (..., m).
@@ -81,7 +82,7 @@ def full_width(
 
 
 def of_samples(x: np.ndarray, p: np.ndarray, level: float = 0.5) -> Width:
-    """`full_width` of profiles (R, n) that are known by samples alone, some of them at a time."""
+    """`full_width` of profiles (R, n) that are known by samples alone, in blocks."""
     rows = max(1, MOST_SAMPLES // x.size)
     parts = [full_width(x, p[start : start + rows], level) for start in range(0, max(1, len(p)), rows)]
     return Width(*(np.concatenate(values) for values in zip(*parts, strict=True)))
@@ -192,10 +193,8 @@ def _edges(
         fine = _between(inner, outer, subsamples)
         looked = np.abs(evaluate(fine.reshape(*fine.shape[:-2], -1))).reshape(fine.shape)
         excess = np.nan_to_num(looked - target[..., None], nan=0.0)
-        excess[..., 0], excess[..., -1] = (
-            above,
-            under,
-        )  # these are known: the search must not miss the crossing by rounding
+        # both ends are known: the search must not miss the crossing by rounding
+        excess[..., 0], excess[..., -1] = above, under
         first = np.maximum(np.argmax(excess < 0, axis=-1), 1)
         inner, outer = _pick(fine, first - 1), _pick(fine, first)
         above, under = _pick(excess, first - 1), _pick(excess, first)

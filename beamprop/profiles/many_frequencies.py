@@ -7,22 +7,23 @@ exact sum over the plane waves. A second contour of other parameters gives the e
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import fft
 from ..contour import near_normal, paths, sums
+from ..contour.error import MARGIN, uniform_budget
 from ..contour.paths import Contour, Extent, StraightPlan
-from ..contour.stationary_phase import landing
+from ..contour.stationary_phase import TransferToPlane, landing
 from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
 from .fwhm import Evaluate, full_width
-from .routes import Measures, Plane, Route
+from .routes import Measures, Route, measures_of
 from .windows import EDGE
 
-#: Exponentials on an even contour are products of two small tables, this many steps apart.
+#: Exponentials on an even contour are products of two tables of n/STEP and STEP entries: fewest for sqrt(n), of some 150 nodes.
 STEP = 12
 
 
@@ -35,8 +36,8 @@ class PlaneWaves(NamedTuple):
 
     def evaluator(self) -> Evaluate:
         """A function of positions (F, m) -> p there, (F, m)."""
-        # plain: the sum over k of right e^{ikx} + left e^{-ikx}. With k = m ds - i sigma, e^{ikx} is a power of e^{i ds x} times
-        # e^{sigma x}; powers are products of two tables, and what goes to the left has their conjugates.
+        # `response.reference.field` is the plain sum. With k = m ds - i sigma, e^{ikx} is a power of e^{i ds x} times e^{sigma x};
+        # powers are products of two tables, and the waves to the left have their conjugates.
         contour, n = self.contour, self.contour.k.shape[-1]
         amplitudes = np.stack([self.right, np.conj(self.left)], axis=-1)
         sigma = np.asarray(contour.sigma)[:, None]
@@ -52,7 +53,9 @@ class PlaneWaves(NamedTuple):
         return value
 
 
-def _both_contours(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves]:
+def _both_contours(
+    s: SampledSlab, beam: Beam, plane: TransferToPlane, plan: StraightPlan
+) -> tuple[PlaneWaves, PlaneWaves]:
     """The plane waves at the plane, on a contour and on a second one for the error; one response for both."""
     contours = paths.straight_contour(plan), paths.straight_contour(plan.other())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
@@ -62,17 +65,20 @@ def _both_contours(s: SampledSlab, beam: Beam, plane: Plane, plan: StraightPlan)
     return PlaneWaves(contours[0], right[:, :n], left[:, :n]), PlaneWaves(contours[1], right[:, n:], left[:, n:])
 
 
-def _plan(s: SampledSlab, beam: Beam, path: Any, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
-    lo, hi = beam.band(s.k0, rtol * 1e-2)
-    source = beam.reach(rtol * 1e-2)
-    extent = np.abs(middle - beam.centre) + half
-    branch = s.nearest_branch
-    return paths.plan_straight(Extent(s.k0, branch, np.maximum(-lo, hi), extent, source, path), rtol)
+def _plan(
+    s: SampledSlab, beam: Beam, path: np.ndarray, middle: np.ndarray, half: np.ndarray, rtol: float
+) -> StraightPlan:
+    lo, hi = beam.band(s.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
+    farthest = np.abs(middle - beam.centre) + half
+    extent = Extent(s.k0, s.nearest_branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), path)
+    return paths.plan_straight(extent, rtol)
 
 
-#: The most plane waves of all frequencies that are worked on at a time, and of one of them.
-MOST_TOGETHER, MOST_OF_ONE = 2**18, 20_000
-#: Poles nearer to kx = 0 than this share of delta count half on either side of a straight contour, whatever its delta.
+#: The most plane waves of all frequencies at a time (an array of them takes 4 MB), and of a single frequency: beyond, a bent contour,
+#: measured by itself, takes fewer (experiments/benchmarks/constants.py).
+MOST_TOGETHER, MOST_OF_A_FREQUENCY = 2**18, 20_000
+#: Poles nearer to kx = 0 than this share of delta count about half on either side of a straight contour, whatever its delta: the share
+#: chi = erfc(-k/delta)/2 of the contour for waves to the right is 0.36 to 0.64 there.
 ROUND = 0.25
 
 
@@ -83,20 +89,20 @@ def measured_together(route: Route, beam: Beam, rtol: float, level: float) -> tu
     frequencies are halved until their plane waves fit.
     """
     s, count = route.slab, np.size(route.slab.k0)
-    nothing = Measures(*(np.full(count, np.nan) for _ in Measures._fields)), np.zeros(count, bool)
+    unknown = np.full(count, np.nan)
+    nothing = Measures(unknown, unknown, unknown, unknown, uniform_budget(count, np.nan)), np.zeros(count, bool)
     if not beam.entire:
         return nothing
     plane = route.plane(s, route.path)
     middle, half = landing(s, beam, plane, route.path)
     plan = _plan(s, beam, route.path, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
-    if count > 1 and count * min(size, MOST_OF_ONE) > MOST_TOGETHER:
-        halves = [
+    if count > 1 and count * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER:
+        (low, good_low), (high, good_high) = (
             measured_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)
-        ]
-        (low, good_low), (high, good_high) = halves
-        return Measures(*map(np.concatenate, zip(low, high, strict=True))), np.concatenate([good_low, good_high])
-    if size >= MOST_OF_ONE:
+        )
+        return measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high])
+    if size >= MOST_OF_A_FREQUENCY:
         return nothing
     first, second = _both_contours(s, beam, plane, plan)
     measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)
@@ -105,7 +111,7 @@ def measured_together(route: Route, beam: Beam, rtol: float, level: float) -> tu
     return measures._replace(centroid=measures.centroid + beam.centre), good
 
 
-def _calm_at_normal(plane: Plane, plan: StraightPlan, rtol: float) -> np.ndarray:
+def _calm_at_normal(plane: TransferToPlane, plan: StraightPlan, rtol: float) -> np.ndarray:
     """Where no pole lies so near to kx = 0 that it counts half on either side, (F,)."""
     near = plane(near_normal.around(np.asarray(plan.delta)[:, None] * ROUND))
     return np.asarray(near_normal.is_calm(near, max(0.01 * rtol, 1e-12))[:, 0])
@@ -163,9 +169,10 @@ def _measured(
     good = (largest_end < EDGE * level * peak) & (peak > 0) & np.isfinite(section.width)
     check = np.stack([section.left, section.right, section.position], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        error = 1.5 * np.max(np.abs(exact(check) - second.evaluator()(check)), axis=-1) / peak
+        error = MARGIN * np.max(np.abs(exact(check) - second.evaluator()(check)), axis=-1) / peak
         power = size**2
         centroid = (power * x).sum(-1) / power.sum(-1)
     error = np.nan_to_num(error, nan=1.0)
     good &= error <= rtol
-    return Measures(section.width, peak, centroid, section.crossings, error), good
+    budget = uniform_budget(error.size, 0.0)._replace(difference=error)
+    return Measures(section.width, peak, centroid, section.crossings, budget), good

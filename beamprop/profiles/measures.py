@@ -10,21 +10,23 @@ import numpy as np
 from scipy.integrate import simpson
 
 from ..contour import choose
-from ..contour.error import SHIFT
+from ..contour.error import SHIFT, ErrorBudget, uniform_budget
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.base import Beam
 from . import power
 from .fwhm import full_width
-from .power import NOTHING, Radiated
+from .power import NOTHING, PowerError, Radiated
 from .windows import Windows, ends_over_peak, widened
 
 #: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
+#: A Gaussian beam loses 4e-4 of its second moment by it, 2e-4 of its width.
 TAIL = 0.01
-#: So often the window is doubled to get there; guided waves of a lossless slab run along for ever.
+#: So often the window is doubled to get there, to 64 times the first; guided waves of a lossless slab run along for ever.
 DOUBLINGS = 6
-#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends.
+#: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends, where the error of
+#: Simpson's rule falls with the fourth power of the spacing, to 2e-4 of what the needed samples leave.
 FINER = 8
 
 
@@ -46,10 +48,12 @@ class Beamlet(NamedTuple):
     rim: float
 
 
-def reflected_and_transmitted(
-    s: SampledSlab, beam: Beam, rtol: float, window: float | None
-) -> list[tuple[Beamlet, float, float]]:
-    """The reflected and the transmitted beam, each with the estimated errors of its |p| over the largest, and of its power."""
+#: A beam, and the estimated errors of its |p| over the largest and of its power.
+Measured = tuple[Beamlet, ErrorBudget, PowerError]
+
+
+def reflected_and_transmitted(s: SampledSlab, beam: Beam, rtol: float, window: float | None) -> list[Measured]:
+    """The reflected and the transmitted beam."""
     choose.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
@@ -73,11 +77,9 @@ def _unchanged(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
     return np.ones((z.size, kx.size))
 
 
-def _measure(
-    s: SampledSlab, beam: Beam, side: Side, launched: Radiated, rtol: float, window: float | None
-) -> tuple[Beamlet, float, float]:
+def _measure(s: SampledSlab, beam: Beam, side: Side, launched: Radiated, rtol: float, window: float | None) -> Measured:
     if not _any_beam(s, beam, side.transfer):
-        return NO_BEAM, 0.0, 0.0
+        return NO_BEAM, uniform_budget(1, 0.0), PowerError()
     whole = window is not None
     profile = widened(
         s,
@@ -107,10 +109,10 @@ def _measure(
         moments_to=float(x[part][-1]),
         rim=float(max(size[part][0], size[part][-1])) / peak if peak > 0 else 0.0,
     )
-    return beamlet, float(profile.quadrature.error[0]), radiated.error + launched.error
+    return beamlet, profile.quadrature.budget, radiated.error.plus(launched.error)
 
 
-#: What is said of a side without a beam.
+#: The measures of a side without a beam.
 _NAN = math.nan
 NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
 
@@ -142,7 +144,7 @@ def _samples(s: SampledSlab, beam: Beam, half: float) -> int:
 def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float, slice]:
     """Centroid and standard deviation of |p|^2, and where they are taken.
 
-    That is where |p| is connected to the peak above the tail, or the `whole` window if asked for or if the tail is cut off.
+    That is where |p| is connected to the peak above the tail, or the `whole` window if requested or if the tail is cut off.
     """
     top = int(np.argmax(size))
     below = np.flatnonzero(size < TAIL * size[top])

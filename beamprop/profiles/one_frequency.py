@@ -15,9 +15,10 @@ from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.base import Beam
 from .fwhm import centroid, full_width
+from .routes import Measures
 from .windows import EDGE, Windows, ends_over_peak, widened
 
-#: So many windows are tried, each twice as wide as the one before.
+#: So many windows are tried, each twice as wide as the one before: to 256 times the first.
 WINDOWS = 9
 
 
@@ -29,8 +30,8 @@ def measured_alone(
     rtol: float,
     level: float,
     guided: bool,
-) -> tuple[float, float, float, int, float]:
-    """What `Measures` holds, at one frequency, across the plane z; `way` is z and the distance along z."""
+) -> Measures:
+    """`Measures` (1,) at one frequency, across the plane z; `way` is z and the distance along z."""
     z, path = way
     plane = np.array([z])
     middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], plane), np.array([path])))
@@ -45,8 +46,9 @@ def measured_alone(
 
     profile = widened(s, beam, transfer, z, Windows(_windows(s, beam, middle, half), holds), rtol, guided)
     section = full_width(profile.x, profile.p, level, profile.evaluator(s, beam))
-    place, error = centroid(profile.x, profile.p), float(profile.quadrature.error[0])
-    return float(section.width), float(section.peak), place, int(section.crossings), error
+    numbers = section.width, section.peak, centroid(profile.x, profile.p), section.crossings
+    width, peak, place, crossings = (np.array([v], float) for v in numbers)
+    return Measures(width, peak, place, crossings, profile.quadrature.budget)
 
 
 def _windows(s: SampledSlab, beam: Beam, middle: float, half: float) -> Iterator[np.ndarray]:
@@ -68,7 +70,7 @@ class _Rim(NamedTuple):
 
 
 #: A guided wave is what still has this share of its |p| in the outer tenths of a window that is twice as wide: a beam in open space
-#: falls to 0.7 of it or less. The peak is the same one if it is within this share. And in so many windows more a wave without loss
+#: falls as 1/sqrt(distance), to 0.7 of it, or faster. The peak is the same one if it is within this share. And in so many windows more a wave without loss
 #: that lies above the level on one side is looked at before the width is said to have no end there.
 UNDIMINISHED, SAME, MORE = 0.9, 0.02, 3
 

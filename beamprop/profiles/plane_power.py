@@ -18,7 +18,7 @@ from ..contour.paths import periodic_contour
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
-from .power import COARSE, FINE, LEAST, MOST_PANELS, SHARE, _nodes, _rule
+from .power import COARSE, FINE, LEAST, MOST_PANELS, SHARE, PowerError, _nodes, _rule
 
 #: kx (n,), real, and a shift of its last bits -> what waves of kx and -kx carry along z through each plane, per kx: (Z, n).
 Flux = Callable[[np.ndarray, float], np.ndarray]
@@ -32,7 +32,7 @@ ROUNDING = 1e-14
 
 def power_through_planes(
     s: SampledSlab, beam: Beam, z: np.ndarray, rtol: float, period: float | None
-) -> tuple[np.ndarray, float]:
+) -> tuple[np.ndarray, PowerError]:
     """Power through planes z (Z,) per metre along y [W/m], and its largest estimated error over the beam's incident power.
 
     Of a periodic array of beams it is the power through one period, a sum of its orders, and no error is known.
@@ -43,7 +43,7 @@ def power_through_planes(
     planes, which = np.unique(z, return_inverse=True)
     parts = [_through_planes(s, beam, planes[i : i + PLANES], rtol, period) for i in range(0, planes.size, PLANES)]
     power = np.concatenate([part[0] for part in parts])
-    return power[which], max(part[1] for part in parts)
+    return power[which], max((part[1] for part in parts), key=lambda error: error.total)
 
 
 def _lossless(s: SampledSlab, behind: bool) -> bool:
@@ -55,7 +55,7 @@ def _lossless(s: SampledSlab, behind: bool) -> bool:
 
 def _through_planes(
     s: SampledSlab, beam: Beam, z: np.ndarray, rtol: float, period: float | None
-) -> tuple[np.ndarray, float]:
+) -> tuple[np.ndarray, PowerError]:
     """`power_through_planes` for planes that are held together."""
     pressure, velocity = (transfer_function.through(s, beam.z0, quantity) for quantity in ("p", "v_z"))
 
@@ -73,7 +73,7 @@ def _through_planes(
     if period is not None:
         contour = periodic_contour(period, max(map(abs, beam.band(s.k0, 1e-8))))  # of |S|^2
         total = 2 * math.pi * (flux(contour.k.real, 0.0)[:-1].real @ contour.weight)
-        return total, math.nan
+        return total, PowerError(math.nan)
     end = _last_kx(s, beam, rtol)
     way = s.thickness + max(float(z[-1]) - s.thickness, 0.0) + max(-float(z[0]), 0.0)
     count = 200 + 2 * end * beam.reach(1e-6) + 2 * float(s.last_branch) * way
@@ -98,7 +98,9 @@ def _last_kx(s: SampledSlab, beam: Beam, rtol: float) -> float:
     return max(min(max(map(abs, beam.band(s.k0, tolerance))), arriving), 1.0001 * last)
 
 
-def _integrated(flux: Flux, end: float, breaks: list[float], count: float, rtol: float) -> tuple[np.ndarray, float]:
+def _integrated(
+    flux: Flux, end: float, breaks: list[float], count: float, rtol: float
+) -> tuple[np.ndarray, PowerError]:
     """Real part of the integral of a flux from 0 to `end` on its planes (Z,), and the largest error over that of its last row.
 
     Panels are halved until two Gauss rules differ by no more than is allowed; see `power`, whose panels these are.
@@ -130,5 +132,7 @@ def _integrated(flux: Flux, end: float, breaks: list[float], count: float, rtol:
         panels = np.concatenate([panels[..., ~split], sums(*halves)], axis=-1)
         start, stop = (np.concatenate([old[~split], new]) for old, new in zip((start, stop), halves, strict=True))
     total = panels[0].real.sum(axis=-1)
-    error = np.abs(panels[1].real).sum(axis=-1) + np.abs(panels[2].real.sum(axis=-1))
-    return total[:-1], float(np.max(error) / total[-1]) if total[-1] > 0 else math.inf
+    rules, rounding = np.abs(panels[1].real).sum(axis=-1), np.abs(panels[2].real.sum(axis=-1))
+    worst, incident = int(np.argmax(rules + rounding)), float(total[-1])
+    scale = 1 / incident if incident > 0 else math.inf
+    return total[:-1], PowerError(scale * float(rules[worst]), scale * float(rounding[worst]))

@@ -20,23 +20,44 @@ from ..contour.paths import slow_ends
 #: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx, and the response h weighted by what was launched: (3, n).
 Density = Callable[[np.ndarray], np.ndarray]
 
-#: Nodes of both rules on a panel.
+#: Nodes of both rules on a panel (experiments/benchmarks/constants.py: fewer or more take about the same time).
 FINE, COARSE = 24, 17
-#: Panels are halved until the two rules differ by this share of the asked accuracy, since tails show less than what they are of;
+#: Panels are halved until the two rules differ by this share of the requested accuracy, since tails show less than what they are of;
 #: the least it may be, what rounding leaves of a sum; and the most panels there may be.
 SHARE, LEAST, MOST_PANELS = 1e-3, 1e-13, 5_000
 
 
+class PowerError(NamedTuple):
+    """The estimated relative error of a power by its terms."""
+
+    rules: float = 0.0  #: difference of two Gauss rules
+    rounding: float = 0.0  #: change with the last bits of the input
+
+    @property
+    def total(self) -> float:
+        """The sum of all terms."""
+        return sum(self)
+
+    @property
+    def largest(self) -> str:
+        """The largest term in words."""
+        return ("the difference between two quadrature rules", "the rounding of the response")[self.index(max(self))]
+
+    def plus(self, second: PowerError) -> PowerError:
+        """The error of a ratio of two powers."""
+        return PowerError(self.rules + second.rules, self.rounding + second.rounding)
+
+
 class Radiated(NamedTuple):
-    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated relative error."""
+    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated error."""
 
     total: float
     mean: float
     deviation: float
-    error: float
+    error: PowerError
 
 
-NOTHING = Radiated(0.0, math.nan, math.nan, 0.0)
+NOTHING = Radiated(0.0, math.nan, math.nan, PowerError())
 
 
 class _Nodes(NamedTuple):
@@ -96,12 +117,12 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     if not total > 0:
         return NOTHING
     mean = first / total
-    error = (sums.apart[0].sum() + abs(sums.rounding[0].sum())) / total
-    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), float(error))
+    error = PowerError(float(sums.apart[0].sum() / total), float(abs(sums.rounding[0].sum()) / total))
+    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), error)
 
 
 def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
-    """Nodes on panels that are parts of i < i + u < i + 1, which stands for alpha between edges i and i + 1.
+    """Nodes on panels that are parts of i < i + u < i + 1, which maps to alpha between edges i and i + 1.
 
     Next to branch points alpha goes as u^2, which takes out their square roots.
     """

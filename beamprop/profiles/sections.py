@@ -6,33 +6,37 @@ spectrum that is not entire) is measured again by itself (`one_frequency`), with
 
 from __future__ import annotations
 
+import functools
 from dataclasses import is_dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 
+from ..contour.error import ErrorBudget, uniform_budget
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
-from .fwhm import HALF_LEVEL, full_width
+from .fwhm import HALF_LEVEL, centroid, full_width
 from .many_frequencies import measured_together
 from .one_frequency import measured_alone
-from .routes import Measures, Route, far_face, without
+from .routes import Measures, Route, far_face, measures_of, without
 
 
 def measure(route: Route, beam: Beam, rtol: float) -> Measures:
     """Width, peak and centroid of the profiles across one plane per frequency."""
     s = route.slab
-    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+    level = _half_level(beam)
     measures, good = measured_together(route, beam, rtol, level)
-    if np.all(good):
-        return measures
-    table = np.array(measures, float)
+    table = measures.table
     for i in np.flatnonzero(~good):
         slab = s.take(int(i))
         way = float(route.z[i]), float(route.path[i])
-        table[:, i] = measured_alone(slab, beam, route.transfer(slab), way, rtol, level, route.guided)
-    return Measures(*table)
+        table[:, i] = measured_alone(slab, beam, route.transfer(slab), way, rtol, level, route.guided).table[:, 0]
+    return measures_of(table)
+
+
+def _half_level(beam: Beam) -> float:
+    return HALF_LEVEL[getattr(beam, "width_of", "pressure")]
 
 
 class Row(NamedTuple):
@@ -46,18 +50,18 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, np.ndarray]:
-    """Widths at all frequencies of a slab, at one angle; crossings of the level, and errors, in the four planes, (4, F)."""
+def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, ErrorBudget]:
+    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst error."""
     wavelengths = 2 * np.pi / s.k0
     # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
     launched = replace(beam, z0=0.0) if is_dataclass(beam) else beam
 
-    def free(distance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def free(distance: np.ndarray) -> Measures:
         if not np.any(distance) and beam.entire:
-            return _launch_widths(s, beam)
-        route = Route(s.without_slab(), without, transfer_function.free, distance, distance, False)
-        measures = measure(route, launched, rtol)
-        return measures.width, measures.crossings, measures.error
+            return _as_launched(s, beam)
+        return measure(
+            Route(s.without_slab(), without, transfer_function.free, distance, distance, False), launched, rtol
+        )
 
     launch = free(np.zeros(s.k0.shape))
     near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
@@ -72,15 +76,19 @@ def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) ->
     )
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
-    widths, met, errors = zip(launch, near, (far.width, far.crossings, far.error), air, strict=True)
-    return Row(*widths, far.peak, far.centroid), np.stack(met), np.stack(errors)
+    planes = launch, near, far, air
+    worst = functools.reduce(ErrorBudget.worse, (plane.budget for plane in planes))
+    row = Row(launch.width, near.width, far.width, air.width, far.peak, far.centroid)
+    return row, np.stack([plane.crossings for plane in planes]), worst
 
 
-def _launch_widths(s: SampledSlab, beam: Beam) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Widths of the launch profile itself, crossings and errors; |p| does not depend on the frequency."""
-    level = HALF_LEVEL[getattr(beam, "width_of", "pressure")]
+def _as_launched(s: SampledSlab, beam: Beam) -> Measures:
+    """The launch profile itself; |p| does not depend on the frequency."""
     k0 = float(s.k0[0])
     x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
     p = beam.profile(x, k0)
-    section = full_width(x, p, level, lambda at: beam.profile(at, k0))
-    return np.full(s.k0.shape, section.width), np.full(s.k0.shape, section.crossings), np.zeros(s.k0.shape)
+    section = full_width(x, p, _half_level(beam), lambda at: beam.profile(at, k0))
+    width, peak, place, crossings = np.full(
+        (s.k0.size, 4), [section.width, section.peak, centroid(x, p), section.crossings]
+    ).T
+    return Measures(width, peak, place, crossings, uniform_budget(s.k0.size, 0.0))

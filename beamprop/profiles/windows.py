@@ -17,7 +17,7 @@ from ..sources.angles import single
 from ..sources.base import Beam
 
 #: A window holds the beam when |p| at its ends is below this share of the level of the width. Not lower: the guided waves of a
-#: lossless slab run on along it without end.
+#: lossless slab run on along it without end. Not higher: |p| may rise to the level between the samples beside the ends.
 EDGE = 0.8
 
 
@@ -71,7 +71,8 @@ def widened(
     return Sampled(x, p, quadrature, h)
 
 
-#: Plane waves below this share of the strongest do not show in widths, nor did they choose the positions.
+#: Plane waves below this share of the strongest move |p| between the samples by no more than that; the first positions of a window
+#: are chosen by the same share of the beam's band.
 FAINT = 1e-4
 
 

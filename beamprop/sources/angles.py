@@ -1,8 +1,8 @@
 """A source at many angles, interpolated from the same source at fewer.
 
 At any depth, the field of a tilted source depends on the sine s of its angle as an integral of exp(i k0 s xi) over the launch
-profile, |xi| <= reach. A polynomial in s through r Chebyshev nodes approximates it, so that a real matrix makes the fields at any
-number of angles of those at r angles. Its error is at most 2 (c/2)^r / r! of the source's amplitude, c = k0 reach (s_max - s_min)/2:
+profile, |xi| <= w (`Beam.reach`, its half width). A polynomial in s through r Chebyshev nodes
+approximates it, so that a real matrix makes the fields at any number of angles of those at r angles. Its error is at most 2 (c/2)^r / r! of the source's amplitude, c = k0 w (s_max - s_min)/2:
 the first Bessel function that the Jacobi-Anger series leaves out. As a function of s the error follows the Chebyshev polynomial
 T_r, because a term T_(r+j) that is left out is aliased to -T_(r-j) at the nodes and T_(r+j) + T_(r-j) = 2 T_r T_j: it vanishes at
 the nodes and is largest at both extremes, where `contour.error` measures it.
@@ -86,6 +86,10 @@ def single(beam: Beam) -> AngleInterpolation:
     return AngleInterpolation(beam, np.array([float(beam.angle)]))
 
 
+#: Interpolation is worth its matrix product and the fields that show its error where it computes less than this share of the beams.
+WORTH_IT = 0.6
+
+
 def interpolate_angles(beam: Beam, angles: np.ndarray, k0: float, tolerance: float) -> AngleInterpolation:
     """A source at angles (A,) [degree]: computed at Chebyshev nodes in sin(angle) where those are fewer."""
     smooth = getattr(beam, "shifts_smoothly", None)
@@ -93,7 +97,7 @@ def interpolate_angles(beam: Beam, angles: np.ndarray, k0: float, tolerance: flo
         sines = sin_degrees(angles)
         middle, half = (sines.max() + sines.min()) / 2, (sines.max() - sines.min()) / 2
         count = nodes_for(k0 * beam.reach(tolerance) * half, tolerance)
-        if count < 0.6 * angles.size:
+        if count < WORTH_IT * angles.size:
             turn = np.pi * (np.arange(count) + 0.5) / count
             nodes = middle + half * np.cos(turn)
             return AngleInterpolation(

@@ -27,7 +27,7 @@ class Beam(Protocol):
 
     * ``spectra(kx, k0, sines)``: S at kx (n,) of the same source at angles of given sines (B,), as an array (B, n).
     * ``shifts_smoothly(tolerance)``: whether S is an entire function of sin(angle) but for `tolerance` of its largest value, so
-      that fields at many angles may be interpolated from a few.
+      that fields at many angles may be interpolated from those at fewer.
     * ``moved_to_origin()``: the same source about x = 0; without it, a source stays where it is.
     * ``spectrum_ends(k0)``: the interval of kx at whose ends the spectrum is cut off, whatever its value there.
     * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`.
@@ -57,21 +57,13 @@ class Beam(Protocol):
         """p(x, z0) [Pa] at x [m], shaped like x."""
 
     def reach(self, tolerance: float) -> float:
-        """Distance from the centre beyond which |p| stays below tolerance times its largest value [m]."""
+        """Half width of the launch profile above a level: beyond, |p| is below tolerance times its largest value [m]."""
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
         """Interval of real kx outside which |S| is below tolerance times its largest value [rad/m]."""
 
     def at_angle(self, angle: float) -> Beam:
         """The same source sent off at another angle [degree]."""
-
-
-def checked_launch(angle: Any, z0: Any) -> tuple[float, float]:
-    """Angle [degree] and launch plane [m] of a source, or the error that says what is wrong with them."""
-    angle, z0 = validate.angle(angle), as_number(z0, "z0")
-    if z0 > 0:
-        raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {z0!r}")
-    return angle, z0
 
 
 def moved_to_origin(beam: Beam) -> tuple[Beam, float]:
@@ -99,12 +91,23 @@ class Tilted:
     z0: float
     entire = True
 
+    def _check_launch(self) -> None:
+        """Angle and launch plane as numbers, or the error that says what is wrong with them."""
+        object.__setattr__(self, "angle", validate.angle(self.angle))
+        object.__setattr__(self, "z0", as_number(self.z0, "z0"))
+        if self.z0 > 0:
+            raise ValueError(f"z0: expected a launch plane in front of the slab, z0 <= 0, got {self.z0!r}")
+
+    def _tilt(self, k0: float) -> float:
+        """kx of the source's direction, k0 sin(angle) [rad/m]."""
+        return k0 * float(sin_degrees(self.angle))
+
     def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
         raise NotImplementedError
 
     def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx), the envelope's spectrum shifted by k0 sin(angle)."""
-        return self._envelope_spectrum(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
+        return self._envelope_spectrum(np.asarray(kx) - self._tilt(k0))
 
     def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
         """S(kx) at angles of given sines (B,), if the source is entire: (B, n) for kx (n,)."""
@@ -119,6 +122,10 @@ class Tilted:
         return replace(self, angle=angle)  # type: ignore[type-var]
 
 
+#: Exponentials that are held at a time: 32 MB.
+BLOCK = 2_000_000
+
+
 def spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarray:
     """sum_j weights_j exp(-i k x_j), shaped like k and then like weights_j, in blocks of bounded memory."""
     k = np.asarray(k)
@@ -127,7 +134,7 @@ def spectral_sum(k: np.ndarray, x: np.ndarray, weights: np.ndarray) -> np.ndarra
         summed = exponentials.over_positions(k.ravel(), weights.reshape(x.size, -1), float(x[0]), step)
         return summed.reshape(*k.shape, *weights.shape[1:])
     out = np.empty((k.size, *weights.shape[1:]), complex)
-    block = max(1, 2_000_000 // max(1, x.size))
+    block = max(1, BLOCK // max(1, x.size))
     flat = k.ravel()
     for start in range(0, k.size, block):
         out[start : start + block] = np.exp(-1j * np.multiply.outer(flat[start : start + block], x)) @ weights

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import validate
 from ..validate import as_number
-from .base import Tilted, checked_launch, sin_degrees
+from .base import Tilted, sin_degrees
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,7 @@ class GaussianBeam(Tilted):
     def __post_init__(self) -> None:
         object.__setattr__(self, "fwhm", as_number(self.fwhm, "fwhm", positive=True))
         object.__setattr__(self, "x0", as_number(self.x0, "x0"))
-        for name, value in zip(("angle", "z0"), checked_launch(self.angle, self.z0), strict=True):
-            object.__setattr__(self, name, value)
+        self._check_launch()
         validate.word(self.width_of, "width_of", "pressure", "intensity")
         validate.word(self.form, "form", "launch", "rotated")
 
@@ -100,10 +99,10 @@ class GaussianBeam(Tilted):
         """p(x, z0) of the launch form; of the rotated form, its waist without the truncation to |kx| < k0."""
         xi = np.asarray(x) - self.x0
         cosine = 1.0 if self.form == "launch" else math.cos(math.radians(self.angle))
-        return np.exp(-((xi * cosine / self.radius) ** 2) + 1j * k0 * float(sin_degrees(self.angle)) * xi)
+        return np.exp(-((xi * cosine / self.radius) ** 2) + 1j * self._tilt(k0) * xi)
 
     def reach(self, tolerance: float) -> float:
-        """a sqrt(ln(1/tolerance)), divided by cos(angle) for the rotated form [m]."""
+        """Half width of |p| above `tolerance`: a sqrt(ln(1/tolerance)), divided by cos(angle) for the rotated form [m]."""
         cosine = 1.0 if self.form == "launch" else math.cos(math.radians(self.angle))
         return self.radius * math.sqrt(math.log(1 / tolerance)) / cosine
 
@@ -111,5 +110,5 @@ class GaussianBeam(Tilted):
         """k0 sin(angle) -+ (2/a) sqrt(ln(1/tolerance)); (-k0, k0) for the rotated form [rad/m]."""
         if self.form == "rotated":
             return -k0, k0
-        middle, half = k0 * float(sin_degrees(self.angle)), 2 / self.radius * math.sqrt(math.log(1 / tolerance))
+        middle, half = self._tilt(k0), 2 / self.radius * math.sqrt(math.log(1 / tolerance))
         return middle - half, middle + half

@@ -10,8 +10,11 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
-from .base import Tilted, checked_launch, sin_degrees, spectral_sum
+from .base import BLOCK, Tilted, spectral_sum
 from .columns import read_columns
+
+#: Steps that differ by less than this share are even: printed positions are known to some six digits.
+EVEN = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +50,7 @@ class Profile(Tilted):
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        for name, value in zip(("angle", "z0"), checked_launch(self.angle, self.z0), strict=True):
-            object.__setattr__(self, name, value)
+        self._check_launch()
         x, p = validate.positions(self.x, "x", increasing=True), validate.numeric(self.p, "p").astype(complex)
         if x.size < 2:
             raise ValueError(f"x: expected a 1-D array of at least 2 positions, got shape {x.shape}")
@@ -60,7 +62,7 @@ class Profile(Tilted):
         if not np.any(p):
             raise ValueError("p: expected a profile that is not zero everywhere")
         steps = np.diff(x)
-        if np.ptp(steps) > 1e-6 * steps.min():
+        if np.ptp(steps) > EVEN * steps.min():
             from scipy.interpolate import CubicSpline
 
             count = float((x[-1] - x[0]) / steps.min()) + 1
@@ -111,8 +113,8 @@ class Profile(Tilted):
             )
         return cls(profile["x"].values, profile.values, z0, angle)
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Profile) and self._key() == other._key()
+    def __eq__(self, value: object) -> bool:
+        return isinstance(value, Profile) and self._key() == value._key()
 
     def __hash__(self) -> int:
         return hash(self._key())
@@ -141,7 +143,7 @@ class Profile(Tilted):
 
     def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
         """S(kx) [Pa m], zero beyond the samples' Nyquist wavenumber."""
-        return super().spectrum(kx, k0) * np.exp(-1j * k0 * float(sin_degrees(self.angle)) * self.centre)
+        return super().spectrum(kx, k0) * np.exp(-1j * self._tilt(k0) * self.centre)
 
     def spectra(self, kx: np.ndarray, k0: float, sines: np.ndarray) -> np.ndarray:
         """S(kx) at angles of given sines (B,): (B, n) for kx (n,). Angles tilt the samples, so all share exp(-i kx x)."""
@@ -156,7 +158,7 @@ class Profile(Tilted):
         Every p_j exp(-i k x_j) errs by itself, by up to EPS (1 + |k x_j|) |p_j|, k = kx - k0 sin(angle). It counts where a slab
         lets through only such kx at which the samples cancel to next to nothing.
         """
-        k = np.abs(np.asarray(kx) - k0 * float(sin_degrees(self.angle)))
+        k = np.abs(np.asarray(kx) - self._tilt(k0))
         size, far = np.abs(self.p), np.abs(self.x)
         moments = [float(np.sqrt(np.sum((size * far**m) ** 2))) for m in (0, 1)]
         largest = [float(np.max(size * far**m)) for m in (0, 1)]
@@ -170,21 +172,21 @@ class Profile(Tilted):
 
     def spectrum_ends(self, k0: float) -> tuple[float, float]:
         """The interval of kx at whose ends the spectrum is cut off, whatever its value there [rad/m]."""
-        middle, half = k0 * float(sin_degrees(self.angle)), np.pi / self.spacing
+        middle, half = self._tilt(k0), np.pi / self.spacing
         return middle - half, middle + half
 
     def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
         """p(x, z0): the band-limited interpolation of the samples [Pa]."""
         x = np.asarray(x, dtype=float)
         p, flat = np.empty(x.size, complex), x.ravel()
-        block = max(1, 2_000_000 // self.x.size)
+        block = max(1, BLOCK // self.x.size)
         for start in range(0, x.size, block):
             part = slice(start, start + block)
             p[part] = np.sinc((flat[part, None] - self.x) / self.spacing) @ self.p
-        return p.reshape(x.shape) * np.exp(1j * k0 * float(sin_degrees(self.angle)) * (x - self.centre))
+        return p.reshape(x.shape) * np.exp(1j * self._tilt(k0) * (x - self.centre))
 
     def reach(self, tolerance: float) -> float:
-        """Half the sampled interval [m]."""
+        """Half width of the launch profile, whatever the level: half the sampled interval, and a sample [m]."""
         return float(self.x[-1] - self.x[0]) / 2 + self.spacing
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
@@ -193,8 +195,5 @@ class Profile(Tilted):
         k = 2 * np.pi * np.fft.fftfreq(size, self.spacing)
         strong = np.abs(np.fft.fft(self.p, size))
         used = np.abs(k[strong > tolerance * strong.max()])
-        middle, half = (
-            k0 * float(sin_degrees(self.angle)),
-            min(used.max() + 2 * np.pi / (size * self.spacing), np.pi / self.spacing),
-        )
+        middle, half = self._tilt(k0), min(used.max() + 2 * np.pi / (size * self.spacing), np.pi / self.spacing)
         return middle - half, middle + half

@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import memory
 from ..validate import as_count, as_number
-from .base import Tilted, checked_launch, sin_degrees, spectral_sum
+from .base import Tilted, spectral_sum
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,7 @@ class Slits(Tilted):
         object.__setattr__(self, "count", as_count(self.count, "count"))
         memory.check("count", 50.0 * self.count, f"{self.count:.3g} slits", "take fewer")
         object.__setattr__(self, "separation", as_number(self.separation, "separation", positive=True))
-        for name, value in zip(("angle", "z0"), checked_launch(self.angle, self.z0), strict=True):
-            object.__setattr__(self, name, value)
+        self._check_launch()
         if self.count > 1 and self.separation < self.width:
             raise ValueError(f"separation: expected at least the slits' width {self.width}, got {self.separation}")
 
@@ -52,7 +51,7 @@ class Slits(Tilted):
 
     def _envelope_spectrum(self, k: np.ndarray) -> np.ndarray:
         half = np.asarray(k) * self.width / 2
-        small = np.abs(half) < 1e-4
+        small = np.abs(half) < 1e-4  # half^4/120, the next term of the series, is below 1e-18
         safe = np.where(small, 1.0, half)
         sinc = np.where(small, 1 - half**2 / 6, np.sin(safe) / safe)
         return self.width * sinc * spectral_sum(k, self.positions, np.ones(self.count))
@@ -66,13 +65,13 @@ class Slits(Tilted):
         for number in (below, below + 1):  # the two nearest slits
             nearest = (np.clip(number, 0, self.count - 1) - middle) * self.separation
             inside |= np.abs(x - nearest) <= self.width / 2
-        return inside * np.exp(1j * k0 * float(sin_degrees(self.angle)) * x)
+        return inside * np.exp(1j * self._tilt(k0) * x)
 
     def reach(self, tolerance: float) -> float:
-        """Half of the distance between the outermost edges [m]."""
+        """Half width of the launch profile, whatever the level: to the outermost edges [m]."""
         return float(self.positions[-1]) + self.width / 2
 
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
         """Where the envelope 2/(k width) of the spectrum falls below the tolerance: wide, for edges are sharp."""
-        middle, half = k0 * float(sin_degrees(self.angle)), 2 / (self.width * tolerance)
+        middle, half = self._tilt(k0), 2 / (self.width * tolerance)
         return middle - half, middle + half
