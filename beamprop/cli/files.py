@@ -18,11 +18,11 @@ SOURCE = click.Path(exists=True, path_type=Path)
 
 
 def read(path: Path) -> xr.Dataset:
-    """A dataset of ours (.nc, .zarr), or COMSOL's text."""
+    """A dataset of ours (.nc, .zarr, .mat), or COMSOL's text."""
     from ..io.comsol import read_comsol
-    from ..io.storage import NETCDF, ZARR, load
+    from ..io.storage import STORED, load
 
-    return load(path) if path.suffix.lower() in NETCDF + ZARR else read_comsol(path)
+    return load(path) if path.suffix.lower() in STORED else read_comsol(path)
 
 
 @click.command()
@@ -79,10 +79,10 @@ def convert(
     source: Path, target: Path, x: str | None, z: str | None, expression: str | None, split_complex: bool, quiet: bool
 ) -> None:
     """Bring COMSOL's text, or a dataset of ours, to a .nc or .zarr."""
-    from ..io.storage import NETCDF, ZARR, save
+    from ..io.storage import STORED, save
 
     def ask() -> xr.Dataset:
-        if source.suffix.lower() in NETCDF + ZARR:
+        if source.suffix.lower() in STORED:
             return read(source)
         from ..io.comsol import read_comsol
 

@@ -17,6 +17,7 @@ import xarray as xr
 
 from .blocked import BlockedVariable
 from .guarded import GuardedFile, uninterrupted
+from .parts import pair_attributes
 from .seal import Stretch, check_seal, seal
 from .settled import Refusal, read_values, refuse_expansion
 
@@ -29,6 +30,8 @@ PROPERTIES = "_NCProperties"
 CHUNK = 2**20
 #: Space for names, attributes and tables: for a file, for each of its variables, and as a share of the values.
 FOR_FILE, FOR_VARIABLE, FOR_VALUES = 2**16, 2**13, 1 / 256
+#: Text of a fixed length in an attribute has less bytes than this, HDF5's limit of a header.
+LONGEST = 2**16 - 2**10
 #: HDF5's filters that are compiled into it or into h5py. Others are loaded from plug-ins, code of somebody's choice.
 FILTERS = {1: "deflate", 2: "shuffle", 3: "fletcher32", 4: "szip", 5: "nbit", 6: "scaleoffset", 32000: "lzf"}
 #: netCDF's mark of a dataset that stands for the length of a dimension, and is not read.
@@ -44,17 +47,20 @@ def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
 
 
 def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
-    """Write one variable block by block, and then the others."""
+    """Write one variable block by block, as a pair of real ones, and then the others."""
     shape = tuple(variable.sizes.values())
     with _new(draft, _stored(shape, variable.chunks, 16), 8) as (file, guarded):
         file.dimensions = variable.sizes
         options: dict[str, Any] = {"chunks": variable.chunks, "fletcher32": True} if shape else {}
-        into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
-        into.attrs.update(variable.attrs)
+        pair = []
+        for name, attrs in pair_attributes(variable.name, variable.attrs).items():
+            pair.append(file.create_variable(name, tuple(variable.sizes), dtype=np.dtype(float), **options))
+            pair[-1].attrs.update(attrs)
         for where, values in variable.blocks:
-            with uninterrupted():
-                into[where] = values
-            guarded.check()
+            for into, part in zip(pair, (values.real, values.imag), strict=True):
+                with uninterrupted():
+                    into[where] = np.ascontiguousarray(part)
+                guarded.check()
         _dump(rest(), file, 0)
 
 
@@ -86,6 +92,7 @@ def _close(file: h5netcdf.File, h5: h5py.File) -> list[Stretch]:
     with h5:
         file.close()
         _record(h5)
+        _plain_attributes(h5)
         h5.flush()
         return [s for name, item in h5.items() for s in _stretches(name, item)]
 
@@ -100,7 +107,7 @@ def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
     """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
     if not v.size or not v.ndim or v.dtype.kind in "OSU":
         return {}
-    packed = {"zlib": True, "complevel": compression} if compression else {}
+    packed = {"zlib": True, "complevel": compression, "shuffle": True} if compression else {}
     return {"fletcher32": True, "chunksizes": _chunks(v), **packed}
 
 
@@ -125,6 +132,14 @@ def _record(h5: h5py.File) -> None:
     known = h5.attrs.get(PROPERTIES, b"")
     text = (known.decode() if isinstance(known, bytes) else str(known)) + f",beamprop={token}"
     h5.attrs.create(PROPERTIES, np.bytes_(text.lstrip(",")))
+
+
+def _plain_attributes(h5: h5py.File) -> None:
+    """Give text in attributes a fixed length: text of any length is a type that Octave and earlier MATLABs do not read."""
+    for item in (h5, *h5.values()):
+        for name, value in list(item.attrs.items()):
+            if isinstance(value, str) and 0 < (length := len(value.encode())) < LONGEST:
+                item.attrs.create(name, value.encode(), dtype=h5py.string_dtype("utf-8", length))
 
 
 def _layout(h5: h5py.File) -> dict[str, Any]:
@@ -214,6 +229,7 @@ def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
 def _check_record(path: Path, h5: h5py.File) -> None:
     """Compare the variables with those that were written; a record copied from another file is none."""
     text, properties = h5.attrs.get(RECORD), h5.attrs.get(PROPERTIES, b"")
+    text = text.decode(errors="replace") if isinstance(text, bytes) else text
     if not isinstance(text, str):
         return
     try:
