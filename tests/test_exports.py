@@ -46,7 +46,7 @@ def read_vtk(path):
     types = {"Float64": "<f8", "Int64": "<i8", "String": "u1"}
     groups = {}
     for group in root.iter():
-        for array in group.findall("DataArray"):
+        for array in [*group.findall("DataArray"), *group.findall("Array")]:
             start = int(array.get("offset"))
             size = int.from_bytes(numbers[start : start + 8], "little")
             values = np.frombuffer(numbers[start + 8 : start + 8 + size], types[array.get("type")])

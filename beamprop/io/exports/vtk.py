@@ -20,7 +20,7 @@ EVEN = 1e-6
 #: Arrays in one file, among which a reader chooses by name.
 MOST = 1000
 
-#: Attributes of an array's tag, and its numbers.
+#: An array's tag with its attributes, and its numbers.
 Array = tuple[str, np.ndarray]
 
 
@@ -72,7 +72,7 @@ def _file(kind: str, where: str, ds: xr.Dataset, axes: dict[str, np.ndarray], co
     for group, arrays in groups.items():
         lines = []
         for about, values in arrays:
-            lines.append(f'<DataArray {about} format="appended" offset="{offset}"/>\n')
+            lines.append(f'<{about} format="appended" offset="{offset}"/>\n')
             numbers += [np.array(values.nbytes, "<u8").tobytes(), values.tobytes()]
             offset += 8 + values.nbytes
         tags[group] = f"<{group}>\n{''.join(lines)}</{group}>\n" if lines else ""
@@ -122,7 +122,7 @@ def _without_position(ds: xr.Dataset) -> list[Array]:
     units = ", ".join(f"{name}: {v.attrs['units']}" for name, v in ds.variables.items() if "units" in v.attrs)
     for name, text in {**ds.attrs, "units": units}.items():
         letters = np.frombuffer(str(text).encode() + b"\0", np.uint8)
-        arrays.append((f'Name={quoteattr(str(name))} type="String" NumberOfTuples="1"', letters))
+        arrays.append((f'Array Name={quoteattr(str(name))} type="String" NumberOfTuples="1"', letters))
     return arrays
 
 
@@ -134,7 +134,7 @@ def _parts(name: str, values: np.ndarray, label: str = "", count: bool = False) 
     arrays = []
     for part, numbers in parts.items():
         kind, word = ("<f8", "Float64") if numbers.dtype.kind == "f" else ("<i8", "Int64")
-        about = f'Name={quoteattr(name + part + label)} type="{word}"'
+        about = f'DataArray Name={quoteattr(name + part + label)} type="{word}"'
         about += f' NumberOfTuples="{numbers.size}"' if count else ""
         arrays.append((about, np.ascontiguousarray(numbers, kind)))
     return arrays

@@ -20,7 +20,7 @@ import xarray as xr
 from ... import validate
 from ..labels import label
 from .blocked import BlockedVariable, Blocks
-from .parts import coded, joined, split, worded
+from .parts import plain, restored, split
 from .rounding import as_digits, in_double, rounded
 from .settled import read_settled
 from .whole import check_target, write_whole
@@ -102,8 +102,7 @@ def save(
     kind = _kind(path)
     pairs = kind == "netcdf" if split_complex is None else validate.flag(split_complex, "split_complex")
     out = rounded(ds, digits) if digits else ds.copy(deep=False)
-    out = split(out) if pairs else out
-    out = coded(out) if kind == "netcdf" else out
+    out = plain(out, pairs) if kind == "netcdf" else split(out) if pairs else out
     for name in out.variables:
         out[name].encoding = {}
     write_whole(path, lambda draft: _format(kind).write(draft, out, level))
@@ -169,4 +168,4 @@ def load(path: str | Path) -> xr.Dataset:
         with contextlib.suppress(KeyError):
             ds[name].encoding = {}
     ds.encoding = {}
-    return in_double(joined(worded(ds)))
+    return in_double(restored(ds))

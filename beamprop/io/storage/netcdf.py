@@ -17,7 +17,7 @@ import xarray as xr
 
 from .blocked import BlockedVariable
 from .guarded import GuardedFile, uninterrupted
-from .parts import pair_attributes
+from .parts import pair_attributes, plain
 from .seal import Stretch, check_seal, seal
 from .settled import Refusal, read_values, refuse_expansion
 
@@ -61,7 +61,7 @@ def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.D
                 with uninterrupted():
                     into[where] = np.ascontiguousarray(part)
                 guarded.check()
-        _dump(rest(), file, 0)
+        _dump(plain(rest()), file, 0)
 
 
 @contextlib.contextmanager

@@ -1,7 +1,8 @@
-"""What netCDF's readers have in common is arrays of real numbers: complex variables as pairs of them, text as codes with a list of words.
+"""What netCDF's readers have in common: arrays of real numbers; complex variables as pairs of them, text as codes with a list of words.
 
 A complex `p` becomes `p_real` and `p_imag`. Words become whole numbers with CF's attributes ``flag_values`` and ``flag_meanings``. Arrays of
-characters would be the other form, but Octave's ``load`` gives up at one, with all variables whose names come later.
+characters would be the other form, but Octave's ``load`` gives up at one, with all variables whose names come later. Whole numbers have 32 bits,
+for ParaView gives up at one of 64.
 """
 
 from __future__ import annotations
@@ -15,6 +16,17 @@ import xarray as xr
 #: Attributes that lead back to the complex variable, and to the words.
 PAIR = ("part_of", "formula", "was_coordinate")
 FLAGS = ("flag_values", "flag_meanings", "flag_words")
+LONG = "was_int64"
+
+
+def plain(ds: xr.Dataset, pairs: bool = True) -> xr.Dataset:
+    """A dataset as netCDF's readers take it."""
+    return coded(short(split(ds) if pairs else ds))
+
+
+def restored(ds: xr.Dataset) -> xr.Dataset:
+    """The dataset that it was."""
+    return joined(worded(long(ds)))
 
 
 # --- complex numbers ------------------------------------------------------------------------------------------
@@ -71,6 +83,23 @@ def _complex(real: np.ndarray, imag: np.ndarray) -> np.ndarray:
     out = np.empty(real.shape, np.result_type(real, np.complex64))
     out.real, out.imag = real, imag
     return out
+
+
+# --- whole numbers ------------------------------------------------------------------------------------------
+
+
+def short(ds: xr.Dataset) -> xr.Dataset:
+    """Whole numbers of 64 bits in 32, where those hold them."""
+    most = np.iinfo(np.int32).max
+    fitting = {n: v for n, v in ds.variables.items() if v.dtype == np.int64 and np.all(np.abs(v.values) <= most)}
+    return ds.assign({n: (v.dims, v.values.astype(np.int32), v.attrs | {LONG: 1}) for n, v in fitting.items()})
+
+
+def long(ds: xr.Dataset) -> xr.Dataset:
+    """Those whole numbers in 64 bits again."""
+    shortened = {n: v for n, v in ds.variables.items() if LONG in v.attrs and v.dtype.kind == "i"}
+    plain = {n: {k: a for k, a in v.attrs.items() if k != LONG} for n, v in shortened.items()}
+    return ds.assign({n: (v.dims, v.values.astype(np.int64), plain[n]) for n, v in shortened.items()})
 
 
 # --- words ----------------------------------------------------------------------------------------------------
