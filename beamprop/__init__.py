@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .comparison.fields import compare
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
+    from .io.exports import export
     from .io.storage import load, save
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt
     from .media.fluids import AIR, Fluid
@@ -59,6 +60,7 @@ _HOMES = {
     "comparison.fields": ("compare",),
     "io.comsol": ("read_comsol", "to_grid"),
     "io.datasets": ("provenance",),
+    "io.exports": ("export",),
     "io.storage": ("load", "save"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -80,6 +82,7 @@ __all__ = [
     "beam_width",
     "bloch",
     "compare",
+    "export",
     "fem",
     "field",
     "fwhm",

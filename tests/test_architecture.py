@@ -351,7 +351,10 @@ def test_each_dependency_states_one_minimum():
 
 
 #: Files of the storage package, in the order in which they may import one another.
-STORAGE = ["blocked", "parts", "whole", "settled", "guarded", "seal", "netcdf", "zarr_store", "__init__"]
+STORAGE = [
+    *("blocked", "parts", "rounding", "whole", "settled", "guarded", "seal"),
+    *("netcdf", "zarr_store", "matlab", "__init__"),
+]
 
 
 @pytest.mark.parametrize("name", STORAGE)

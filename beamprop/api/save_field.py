@@ -59,8 +59,8 @@ def save_field(
     Returns
     -------
     Dataset
-        All of the answer but the variables on (z, x). Read the file with `load`, or by parts with ``xarray.open_dataset(path, engine="h5netcdf")``
-        or ``xarray.open_zarr(path, consolidated=False)``.
+        All of the answer but the variables on (z, x). Read the file with `load`, or by parts with ``xarray.open_dataset(path, chunks={})``,
+        where p is the pair ``p_real`` and ``p_imag``, or ``xarray.open_zarr(path)``.
 
     Warns
     -----

@@ -35,9 +35,9 @@ def answer(
             click.echo(f"warning: {w.message}", err=True)
     try:
         if o["output"] and not saved:
-            from ..io.storage import save
+            from ..io.exports import write
 
-            save(ds, o["output"])
+            write(ds, o["output"])
         if o["plot"] and draw is not None:
             draw_into(ds, draw, o["plot"])
     except ValueError as error:

@@ -18,11 +18,11 @@ SOURCE = click.Path(exists=True, path_type=Path)
 
 
 def read(path: Path) -> xr.Dataset:
-    """A dataset of ours (.nc, .zarr), or COMSOL's text."""
+    """A dataset of ours (.nc, .zarr, .mat), or COMSOL's text."""
     from ..io.comsol import read_comsol
-    from ..io.storage import NETCDF, ZARR, load
+    from ..io.storage import STORED, load
 
-    return load(path) if path.suffix.lower() in NETCDF + ZARR else read_comsol(path)
+    return load(path) if path.suffix.lower() in STORED else read_comsol(path)
 
 
 @click.command()
@@ -30,7 +30,9 @@ def read(path: Path) -> xr.Dataset:
 @click.argument("b", type=SOURCE)
 @click.option("--tolerance", type=click.FloatRange(min=0), help="Exit with 1 when the relative L2 error is above this.")
 @click.option("--rescale", is_flag=True, help="Bring b to a by the best complex factor first.")
-@click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the comparison to this .nc or .zarr.")
+@click.option(
+    "--output", "-o", type=Target(), help="Write the comparison to this .nc, .zarr, .mat, .vti, .vtr or .csv."
+)
 @click.option("--plot", "-p", type=Target(".png", ".pdf"), help="Draw it into this .png or .pdf.")
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json.")
@@ -69,20 +71,24 @@ def _summary(ds: xr.Dataset) -> str:
 
 @click.command()
 @click.argument("source", type=SOURCE)
-@click.argument("target", type=Target(".nc", ".zarr"))
+@click.argument("target", type=Target())
 @click.option("--x", help="The file's coordinate that is lateral; its first by default.")
 @click.option("--z", help="The file's coordinate that is depth; its second by default.")
 @click.option("--expression", help="The expression that is the pressure, where several may be.")
 @click.option("--split-complex", is_flag=True, help="Write real and imaginary parts as variables of their own.")
+@click.option(
+    "--digits", type=click.IntRange(1, 15), help="Keep so many digits of each variable's largest value, compressed."
+)
 @click.option("--quiet", "-q", is_flag=True, help="Print nothing.")
 def convert(
-    source: Path, target: Path, x: str | None, z: str | None, expression: str | None, split_complex: bool, quiet: bool
+    source: Path, target: Path, x: str | None, z: str | None, expression: str | None, quiet: bool, **options: Any
 ) -> None:
-    """Bring COMSOL's text, or a dataset of ours, to a .nc or .zarr."""
-    from ..io.storage import NETCDF, ZARR, save
+    """Bring COMSOL's text, or a dataset of ours, to a .nc, .zarr, .mat (MATLAB), .vti, .vtr (ParaView) or .csv."""
+    from ..io.exports import write
+    from ..io.storage import STORED
 
     def ask() -> xr.Dataset:
-        if source.suffix.lower() in NETCDF + ZARR:
+        if source.suffix.lower() in STORED:
             return read(source)
         from ..io.comsol import read_comsol
 
@@ -91,7 +97,7 @@ def convert(
     o = {"output": None, "plot": None, "as_json": False, "quiet": True}
     ds = answer(o, ask, None, str)
     try:
-        save(ds, target, split_complex=split_complex)
+        write(ds, target, **{name: value for name, value in options.items() if value})
     except ValueError as error:
         raise click.UsageError(str(error)) from None
     except (OSError, ImportError) as error:

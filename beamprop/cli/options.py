@@ -42,7 +42,7 @@ def _parsed(kind: click.ParamType, parse: Callable[[Any, str], Any], value: Any,
 
 
 class Target(click.ParamType):
-    """A file to write, with one of the given endings, in a folder that exists and can be written to."""
+    """A file to write, with one of the given endings (or any for datasets), in a folder that exists and can be written to."""
 
     name = "file"
 
@@ -51,8 +51,11 @@ class Target(click.ParamType):
 
     def convert(self, value: Any, param: Any, ctx: Any) -> Path:
         path = Path(value)
-        if path.suffix.lower() not in self.endings:
-            self.fail(f"expected a name ending in {' or '.join(self.endings)}, got {str(value)!r}", param, ctx)
+        from ..io.exports import WRITTEN
+
+        endings = self.endings or WRITTEN
+        if path.suffix.lower() not in endings:
+            self.fail(f"expected a name ending in {' or '.join(endings)}, got {str(value)!r}", param, ctx)
         from ..io.storage import check_target
 
         try:
@@ -110,7 +113,12 @@ BEAM = all_of(
     option("--rtol", default=1e-8, text="Requested relative error."),
 )
 OUTPUT_WITHOUT_PLOT = all_of(
-    click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the dataset to this .nc or .zarr."),
+    click.option(
+        "--output",
+        "-o",
+        type=Target(),
+        help="Write the dataset to this .nc, .zarr, .mat, .vti, .vtr or .csv (of one axis).",
+    ),
     click.option("--json", "as_json", is_flag=True, help="Print the dataset as JSON."),
     click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json."),
 )

@@ -55,9 +55,10 @@ def _compressors() -> list[Any]:
 # --- writing --------------------------------------------------------------------------------------------------
 
 
-def write(draft: Path, ds: xr.Dataset) -> None:
-    """Write a dataset."""
+def write(draft: Path, ds: xr.Dataset, _level: int) -> None:
+    """Write a dataset; zlib's level does not concern Zarr."""
     need_zarr()
+    ds = _with_plain_text(ds)
     ds.to_zarr(draft, encoding={name: _encoding(v) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
@@ -84,9 +85,14 @@ def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr
     for where, block in variables.blocks:
         for name, values in block.items():
             into[name][where] = values
-    others = rest()
+    others = _with_plain_text(rest())
     others.to_zarr(draft, mode="a", encoding={n: _encoding(v) for n, v in others.variables.items()}, consolidated=False)
     record(draft)
+
+
+def _with_plain_text(ds: xr.Dataset) -> xr.Dataset:
+    """Text as Zarr's type `string`: that of a fixed length is in no specification yet."""
+    return ds.assign({name: v.astype(object) for name, v in ds.variables.items() if v.dtype.kind == "U"})
 
 
 def _encoding(v: xr.Variable) -> dict[str, Any]:
@@ -96,13 +102,15 @@ def _encoding(v: xr.Variable) -> dict[str, Any]:
 
 
 def record(store: Path) -> None:
-    """Put the checksums of a complete store into its root's attributes."""
+    """Put the checksums of a complete store into its root's attributes, and the arrays' metadata beside them (consolidated)."""
+    metadata = {folder.relative_to(store).as_posix(): about for folder, about in _nodes(store) if folder != store}
     arrays = {
-        folder.relative_to(store).as_posix(): [_digest(about), "".join(_chunk_crcs(folder, about))]
-        for folder, about in _nodes(store)
+        name: [_digest(about), "".join(_chunk_crcs(store / name, about))]
+        for name, about in metadata.items()
         if about["node_type"] == "array"
     }
     root = _metadata(store)
+    root["consolidated_metadata"] = {"kind": "inline", "must_understand": False, "metadata": metadata}
     attributes = {k: v for k, v in root.get("attributes", {}).items() if k not in (RECORD, RECORDED)}
     root["attributes"] = attributes
     sums = {"root": _digest(root), "arrays": arrays}
