@@ -232,6 +232,31 @@ def test_words_of_all_kinds(tmp_path, path):
     xr.testing.assert_identical(bp.load(tmp_path / path), ds)
 
 
+def test_attributes_that_look_like_ours(tmp_path):
+    """A file of somebody else's, with our attributes and without their sense: read as it stands."""
+    ds = xr.Dataset(
+        {
+            "a_real": ("x", [1.0, 2.0], {"part_of": "a"}),  # without its other part
+            "b_real": ("x", [1.0, 2.0], {"part_of": "b"}),
+            "b_imag": ("y", [1.0, 2.0, 3.0], {"part_of": "b"}),  # on another dimension
+            "c_real": ("x", [1.0, 2.0], {"part_of": np.array([1, 2])}),
+            "d": ("x", [0, 5], {"flag_words": '["one", "two"]'}),  # a code too large
+            "e": ("x", [-1, 0], {"flag_words": '["one", "two"]'}),
+            "f": ("x", [0.0, 1.0], {"flag_words": '["one", "two"]'}),
+            "g": ("x", [0, 0], {"flag_words": '{"one": 1}'}),
+            "h": ("x", [0, 1], {"flag_words": "[[[[["}),
+            "i": ("x", [0, 1], {"flag_words": np.array([1, 2])}),
+        }
+    )
+    ds.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    xr.testing.assert_identical(bp.load(tmp_path / "a.nc"), ds)
+
+
+def test_endings_of_export_are_told(tmp_path, small):
+    with pytest.raises(ValueError, match=r"^path: .*got 'a.csv' \(which export writes\)"):
+        bp.save(small, tmp_path / "a.csv")
+
+
 # --- rounded ----------------------------------------------------------------------------------------------
 
 

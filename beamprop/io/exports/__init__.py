@@ -9,15 +9,13 @@ from typing import Any
 import xarray as xr
 
 from ... import validate
-from ..storage import STORED, save, write_whole
+from ..storage import EXPORTS, STORED, save, write_whole
 from . import table, vtk
 
 #: Of each ending, what makes the pieces of the file.
-PIECES: dict[str, Callable[[xr.Dataset], list[bytes]]] = {
-    ".vti": vtk.image,
-    ".vtr": vtk.rectilinear,
-    ".csv": table.rows,
-}
+PIECES: dict[str, Callable[[xr.Dataset], list[bytes]]] = dict(
+    zip(EXPORTS, (vtk.image, vtk.rectilinear, table.rows), strict=True)
+)
 EXPORTED = (".mat", *PIECES)
 #: What a file can be written as at all.
 WRITTEN = (*STORED, *PIECES)

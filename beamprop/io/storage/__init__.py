@@ -30,6 +30,8 @@ __all__ = ["STORED", "Blocks", "check_target", "load", "save", "save_blocks", "w
 #: Endings, and the file here that knows their format.
 FORMATS = dict.fromkeys((".nc", ".nc4", ".netcdf", ".h5"), "netcdf") | {".zarr": "zarr_store", ".mat": "matlab"}
 STORED = tuple(FORMATS)
+#: Endings for other programs, which are not read again.
+EXPORTS = (".vti", ".vtr", ".csv")
 #: zlib's level for rounded values: higher ones are slower and save some percent.
 LEVEL_OF_ROUNDED = 4
 
@@ -37,7 +39,8 @@ LEVEL_OF_ROUNDED = 4
 def _kind(path: Path, kinds: tuple[str, ...] = ("netcdf", "zarr_store", "matlab")) -> str:
     endings = [ending for ending, kind in FORMATS.items() if kind in kinds]
     if path.suffix.lower() not in endings:
-        raise ValueError(f"path: expected an ending of {', '.join(endings)}, got {path.name!r}")
+        hint = " (which export writes)" if path.suffix.lower() in EXPORTS else ""
+        raise ValueError(f"path: expected an ending of {', '.join(endings)}, got {path.name!r}{hint}")
     return FORMATS[path.suffix.lower()]
 
 

@@ -68,13 +68,14 @@ def joined(ds: xr.Dataset) -> xr.Dataset:
         if v.dtype.names == ("r", "i"):
             whole[str(name)] = (v.dims, _complex(v.values["r"], v.values["i"]), v.attrs)
         part_of = v.attrs.get("part_of")
-        if part_of and str(name) == f"{part_of}_real" and f"{part_of}_imag" in ds.variables:
+        imag = ds.variables.get(f"{part_of}_imag") if str(name) == f"{part_of}_real" else None
+        if isinstance(part_of, str) and imag is not None and imag.dims == v.dims:
             attrs = {k: a for k, a in v.attrs.items() if k not in PAIR}
             if "long_name" in attrs:
                 attrs["long_name"] = attrs["long_name"].removesuffix(", real part")
             places += [part_of] if v.attrs.get("was_coordinate") else []
             parts += [str(name), f"{part_of}_imag"]
-            whole[part_of] = (v.dims, _complex(v.values, ds.variables[f"{part_of}_imag"].values), attrs)
+            whole[part_of] = (v.dims, _complex(v.values, imag.values), attrs)
     return ds.drop_vars(parts).assign(whole).set_coords(places)
 
 
@@ -144,7 +145,9 @@ def _words(v: xr.Variable) -> np.ndarray | None:
     """The words that the codes of a variable stand for; None where they are no such codes."""
     try:
         words = json.loads(v.attrs["flag_words"])
-        fitting = v.dtype.kind == "i" and v.values.min() >= 0 and v.values.max() < len(words)
+        fitting = (
+            isinstance(words, list) and v.dtype.kind == "i" and v.values.min() >= 0 and v.values.max() < len(words)
+        )
     except (KeyError, TypeError, ValueError, RecursionError):
         return None
     return np.array(words, dtype=str) if fitting and all(isinstance(w, str) for w in words) else None
