@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .comparison.fields import compare
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
+    from .io.exports import export
     from .io.storage import load, save
     from .media.attenuation import power_law
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt, wood_mixture
@@ -77,6 +78,7 @@ _HOMES = {
     "comparison.fields": ("compare",),
     "io.comsol": ("read_comsol", "to_grid"),
     "io.datasets": ("provenance",),
+    "io.exports": ("export",),
     "io.storage": ("load", "save"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -102,6 +104,7 @@ __all__ = [
     "bloch",
     "compare",
     "delany_bazley_miki",
+    "export",
     "fem",
     "field",
     "fwhm",

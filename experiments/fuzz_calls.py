@@ -126,7 +126,12 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
     "save": (
         bp.save,
         {"ds": draw_answer, "path": draw_text_file},
-        {"split_complex": draw_flag, "compression": lambda r: 3},
+        {"split_complex": draw_flag, "compression": lambda r: 3, "digits": lambda r: 4},
+    ),
+    "export": (
+        bp.export,
+        {"ds": draw_answer, "path": lambda r: draw_text_file(r).with_suffix(pick(r, (".mat", ".vti", ".vtr", ".csv")))},
+        {},
     ),
     "load": (bp.load, {"path": draw_text_file}, {}),
     "save_field": (
