@@ -208,6 +208,21 @@ def test_the_defaults_of_the_paper_are_the_paper():
     assert parameters.beam({}, design.scale) == bp.GaussianBeam(0.096)
 
 
+def test_a_question_far_from_the_paper_s_design_is_told_so():
+    """A hint; none at frequencies near it, with a frequency of one's own, or with layers."""
+    far = ["scattering", "--periods", "5", "--angle", "0", "--frequency", "1MHz"]
+    assert (
+        "warning: design_frequency: the cell is the paper's, designed for 2500 Hz; give one near 1e+06 Hz"
+        in good(*far).stderr
+    )
+    for options in (
+        [*far, "--design-frequency", "1MHz"],
+        [*far[:-1], "250:25000:3"],
+        ["scattering", *LAYERS, *far[3:]],
+    ):
+        assert "design" not in good(*options).stderr
+
+
 # --- answers ----------------------------------------------------------------------------------------------
 
 
@@ -257,6 +272,16 @@ def test_an_empty_folder_is_not_replaced_by_a_file(option, tmp_path, monkeypatch
     assert folder.is_dir()
 
 
+def test_what_is_read_is_not_overwritten(tmp_path):
+    path = tmp_path / "lens.csv"
+    path.write_text("thickness_mm,material\n2,acrylic\n")
+    options = ["--layers", str(path), "--frequency", "1MHz", "--angle", "0:10:3", "--output", str(path)]
+    result = CliRunner().invoke(main, ["scattering", *options])
+    assert result.exit_code == 2
+    assert f"--output: expected a file other than that of --layers, got '{path}'" in result.stderr
+    assert path.read_text().endswith("acrylic\n")
+
+
 def test_what_is_compared_is_not_overwritten(tmp_path):
     bp.save(bp.field(bp.Slab(OWN), bp.GaussianBeam(0.05), 2500.0, [0.0, 0.1], [0.0, 0.1]), tmp_path / "a.nc")
     before = (tmp_path / "a.nc").read_bytes()
@@ -265,6 +290,7 @@ def test_what_is_compared_is_not_overwritten(tmp_path):
     assert result.exit_code == 2
     assert f"--output: expected a file other than those compared, got '{path}'" in result.stderr
     assert (tmp_path / "a.nc").read_bytes() == before
+    assert "relative L2 error    0.0000e+00\n" in good("compare", path, path, "--tolerance", "0").stdout
 
 
 # --- help -------------------------------------------------------------------------------------------------

@@ -61,8 +61,12 @@ def check_text(values: float) -> None:
     memory.check("--json", JSON * values, f"the text of {values:.3g} values", "write them to a file with --output")
 
 
-def check_ending(output: Path | None, axes: Mapping[str, Any], field: bool = False) -> None:
-    """Refuse an ending that cannot hold the answer, before it is asked for: of several axes, or without positions."""
+def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False) -> None:
+    """Refuse, before the work, a file that cannot hold the answer (of several axes, or without positions), or that is read."""
+    output = o["output"]
+    for name in ("layers", "profile"):
+        if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():
+            raise click.UsageError(f"--output: expected a file other than that of --{name}, got {str(output)!r}")
     several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if isinstance(value, list)]
     ending = "" if output is None else output.suffix.lower()
     if ending == ".csv" and len(several) > 1:

@@ -72,8 +72,8 @@ def _summary(ds: xr.Dataset) -> str:
 
 
 def _widths(ds: xr.Dataset) -> list[str]:
-    """The line on widths, which scattered nodes have none of."""
-    if "fwhm_difference" not in ds:
+    """The line on widths, which scattered nodes have none of, nor fields that fall to half nowhere."""
+    if "fwhm_difference" not in ds or bool(ds["fwhm_difference"].isnull().all()):
         return []
     return [f"widths differ by up to {float(abs(ds['fwhm_difference']).max()) * 1000:.4g} mm"]
 

@@ -9,7 +9,7 @@ import click
 
 from .. import parameters
 from ..parameters import spaced
-from .answer import answer, check_ending, check_text, progress, table
+from .answer import answer, check_output, check_text, progress, table
 from .commands import command
 from .failures import typed
 from .options import BEAM, CELL, LENGTH, NAMES, POSITIVE, REAL, SLAB, axis, given, launch, option, output, switch, words
@@ -79,7 +79,7 @@ def beam_width(**o: Any) -> None:
 
     if o["frequency"] is not None:
         _needs_axis(o, "frequency", "angle")
-    check_ending(o["output"], {"frequency": o["frequency"] or [], "angle": o["angle"]})
+    check_output(o, {"frequency": o["frequency"] or [], "angle": o["angle"]})
     names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
     answer(o, ask, draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
 
@@ -111,7 +111,7 @@ def beam_measures(**o: Any) -> None:
             progress=progress(o),
         )
 
-    check_ending(o["output"], {"frequency": o["frequency"], "angle": o["angle"], "side": []})
+    check_output(o, {"frequency": o["frequency"], "angle": o["angle"], "side": []})
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
     answer(o, ask, None, lambda ds: table(ds, names))
 
@@ -187,8 +187,8 @@ def field(**o: Any) -> None:
         raise click.UsageError(f"--plot: expected p among --variables, got {','.join(variables)}")
     if o["memory"] is not None and (o["plot"] or o["as_json"] or not o["output"]):
         raise click.UsageError("--memory: expected --output alone, for a map that is written and never held")
-    check_ending(
-        o["output"],
+    check_output(
+        o,
         {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None else o[n] for n in "xz"},
         field=True,
     )
@@ -245,7 +245,7 @@ def scattering(**o: Any) -> None:
     if len(axes) > 1:
         raise click.UsageError(f"{', '.join(map(typed, axes))}: expected exactly one of them, got {len(axes)}")
     _needs_axis(o | axes, "frequency", *axes)
-    check_ending(o["output"], {"frequency": o["frequency"]} | axes)
+    check_output(o, {"frequency": o["frequency"]} | axes)
     names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
     answer(o, ask, draw, lambda ds: table(ds, names))
 
@@ -282,7 +282,7 @@ def bloch(**o: Any) -> None:
 
     if o["plot"] and not isinstance(kx_over_k0, list):
         raise click.UsageError("--plot: expected an axis for --kx-over-k0, got one value")
-    check_ending(o["output"], {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
+    check_output(o, {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
     answer(o, ask, draw, summary)
 
 
@@ -310,6 +310,7 @@ def guided_modes(**o: Any) -> None:
         k = ds["kx_over_k0"]
         return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
 
+    check_output(o, {"frequency": o["frequency"], "mode": []})
     answer(o, ask, None, summary)
 
 

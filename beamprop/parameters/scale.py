@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 #: Wavelength of the paper's design [m].
 PAPER = 343.0 / 2500.0
+#: From this factor between the frequency of a question and that of the paper's design on, the latter was probably not meant.
+FAR = 10.0
 
 
 class Design(NamedTuple):
@@ -80,7 +82,21 @@ def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -
         raise ValueError("frequency: expected a frequency [Hz] for these layers, got none")
     else:
         middle = (min(asked) + max(asked)) / 2 if isinstance(asked, list) else asked
+    if not layered and asked is not None and "design_frequency" not in table:
+        _hint(middle, asked)
     return Design(middle, _wavelength(table, before, middle), layered)
+
+
+def _hint(middle: float, asked: Axis) -> None:
+    """Warn where every frequency is far from that of a design which nobody chose."""
+    import warnings
+
+    from ..media.hints import HintWarning
+
+    several = asked if isinstance(asked, list) else [asked]
+    if min(several) > FAR * middle or max(several) < middle / FAR:
+        said = f"design_frequency: the cell is the paper's, designed for {middle:g} Hz; give one near {several[0]:g} Hz to scale it"
+        warnings.warn(said, HintWarning, stacklevel=3)
 
 
 def _wavelength(table: Mapping[str, Any], before: Fluid, at: float) -> float:
