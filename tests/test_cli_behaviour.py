@@ -11,35 +11,23 @@ import time
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from command import COMMAND, from_json, good
 from versions import names
 
 import beamprop as bp
 from beamprop import parameters
 from beamprop.cli import main
 
-COMMAND = [sys.executable, "-c", "from beamprop.cli import main; main(prog_name='beamprop')"]
+PROCESS = [sys.executable, "-c", COMMAND]
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
 LAYERS = ["--layer", "density=1000 speed=1480 2mm", "--layer", "acrylic 5 mm", "--layer", "areal_density=0.3"]
 OWN = [bp.Layer(WATER, 0.002), bp.Layer(bp.material("acrylic"), 0.005), bp.Membrane(0.3)]
 IN_WATER = ["--density", "1000", "--sound-speed", "1480"]
 
 
-def good(*arguments):
-    result = CliRunner().invoke(main, [str(a) for a in arguments])
-    assert result.exit_code == 0, result.output
-    return result
-
-
 def data(*arguments):
     record = json.loads(good(*arguments, "--json").stdout)
     return record["coords"] | record["data_vars"]
-
-
-def numbers(value):
-    """{re, im} as complex numbers, lists as arrays."""
-    if isinstance(value, list):
-        return np.array([numbers(v) for v in value])
-    return complex(value["re"], value["im"]) if isinstance(value, dict) else value
 
 
 # --- layers and sources of the user's own -----------------------------------------------------------------
@@ -50,7 +38,7 @@ def test_layers_in_words():
     for more, periods in ((), 1), (("--periods", "3"), 3):
         got = data("scattering", *LAYERS, *more, "--frequency", "10kHz,20kHz", "--angle", "0")
         want = bp.scattering(bp.Slab(OWN, periods), [1e4, 2e4], angle=0.0)
-        np.testing.assert_allclose(numbers(got["t"]["data"]), want.t.values, rtol=1e-12)
+        np.testing.assert_allclose(from_json(got["t"]["data"]), want.t.values, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -79,7 +67,7 @@ def test_layers_of_a_file(tmp_path):
     path.write_text("thickness_mm,material,density,sound_speed\n2,acrylic,,\n0.2,,1250,1900\n")
     got = data("scattering", "--layers", path, "--background", "water", "--frequency", "1MHz", "--angle", "10")
     want = bp.scattering(bp.Slab.from_table(path, background=bp.material("water")), 1e6, angle=10.0)
-    assert numbers(got["t"]["data"]) == pytest.approx(want.t.item(), rel=1e-12)
+    assert from_json(got["t"]["data"]) == pytest.approx(want.t.item(), rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +85,7 @@ def test_layers_of_a_file(tmp_path):
 def test_half_spaces_by_material(options, before, after):
     got = data("scattering", *LAYERS, *options, "--frequency", "20kHz", "--angle", "0")
     want = bp.scattering(bp.Slab(OWN, before=before, after=after), 2e4, angle=0.0)
-    assert numbers(got["t"]["data"]) == pytest.approx(want.t.item(), rel=1e-12)
+    assert from_json(got["t"]["data"]) == pytest.approx(want.t.item(), rel=1e-12)
 
 
 def test_the_paper_s_cell_in_water():
@@ -105,7 +93,7 @@ def test_the_paper_s_cell_in_water():
     got = data("scattering", "--background", "water", "--design-frequency", "1MHz", "--periods", "5", "--angle", "10")
     water = bp.material("water")
     slab = bp.Slab(bp.lmmd_cell(design_frequency=1e6, background=water), 5, background=water)
-    assert numbers(got["t"]["data"]) == pytest.approx(bp.scattering(slab, 1e6, angle=10.0).t.item(), rel=1e-12)
+    assert from_json(got["t"]["data"]) == pytest.approx(bp.scattering(slab, 1e6, angle=10.0).t.item(), rel=1e-12)
     assert parameters.design({"background": "water"}, water).wavelength == pytest.approx(1482.38 / 2500, rel=1e-5)
 
 
@@ -119,14 +107,14 @@ def test_variables_of_a_field():
         bp.Slab(bp.lmmd_cell(), 5), beam, 2500.0, np.linspace(-0.1, 0.1, 5), [0, 0.02], rtol=1e-6, variables=names
     )
     for name in names:
-        np.testing.assert_allclose(numbers(got[name]["data"]), want[name].values, rtol=1e-12)
+        np.testing.assert_allclose(from_json(got[name]["data"]), want[name].values, rtol=1e-12)
     assert "largest |v_z|" in good("field", *options, "--variables", "v_z").stdout
 
 
 def test_bloch_of_layers():
     got = data("bloch", *LAYERS, "--frequency", "3000", "--kx-over-k0", "0,0.5")
     want = bp.bloch(bp.Cell(OWN), 3000.0, kx_over_k0=[0.0, 0.5])
-    np.testing.assert_allclose(numbers(got["kz"]["data"]), want.kz.values, rtol=1e-12)
+    np.testing.assert_allclose(from_json(got["kz"]["data"]), want.kz.values, rtol=1e-12)
 
 
 def test_slits():
@@ -136,7 +124,7 @@ def test_slits():
     )
     beam = bp.Slits(0.01, 0.04, 3, z0=-0.1)
     want = bp.field(bp.Slab(bp.lmmd_cell(), 5), beam, 2500.0, np.linspace(-0.1, 0.1, 5), 0.02, rtol=1e-6)
-    np.testing.assert_allclose(numbers(got["p"]["data"]), want.p.values, rtol=1e-12)
+    np.testing.assert_allclose(from_json(got["p"]["data"]), want.p.values, rtol=1e-12)
 
 
 def test_profile(tmp_path):
@@ -343,7 +331,7 @@ def test_completion(words, offered):
     """What click's completion offers to a shell."""
     environment = os.environ | {"_BEAMPROP_COMPLETE": "bash_complete", "COMP_WORDS": words}
     environment["COMP_CWORD"] = str(len(words.split(" ")) - 1)
-    done = subprocess.run(COMMAND, capture_output=True, text=True, env=environment, check=True)
+    done = subprocess.run(PROCESS, capture_output=True, text=True, env=environment, check=True)
     assert offered in done.stdout
 
 
@@ -359,7 +347,7 @@ LONG = ["field", "--lossless", "--x", "-5:5:4001", "--z", "0:2:2001", "--memory"
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_signals_leave_nothing(number, code, word, tmp_path):
     """While a map is being written: 130 for Ctrl-C, 143 for SIGTERM, and an empty folder."""
-    with subprocess.Popen([*COMMAND, *LONG, str(tmp_path / "a.nc")], stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen([*PROCESS, *LONG, str(tmp_path / "a.nc")], stderr=subprocess.PIPE, text=True) as process:
         deadline = time.monotonic() + 60
         while not list(tmp_path.glob("*/*")) and time.monotonic() < deadline:
             time.sleep(0.01)
@@ -374,7 +362,7 @@ def test_signals_leave_nothing(number, code, word, tmp_path):
 def test_a_closed_pipe_is_no_traceback():
     """`beamprop bloch --json | head -1`."""
     with subprocess.Popen(
-        [*COMMAND, "bloch", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        [*PROCESS, "bloch", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as process:
         process.stdout.close()
         assert "Traceback" not in process.stderr.read()
@@ -413,7 +401,7 @@ def test_messages_on_a_terminal_stand_on_their_own_lines(code, begins):
     options = ["beam_width", "--angle", "30", "--frequency", "2500", "--periods", "20"]
     ours, theirs = pty.openpty()
     termios.tcsetwinsize(ours, (24, 100))
-    command = [sys.executable, "-c", code + COMMAND[2], *options]
+    command = [sys.executable, "-c", code + COMMAND, *options]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=theirs) as process:
         os.close(theirs)
         assert process.wait(60) == (2 if FAILS in code else 0)
