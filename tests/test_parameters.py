@@ -1,5 +1,7 @@
 """Tables of plain values: the objects that they stand for, and refusals that name the key."""
 
+import doctest
+import importlib
 import json
 import re
 import tomllib
@@ -112,6 +114,15 @@ def test_tables_of_files():
     assert parameters.slab(read["slab"]) == bp.Slab(bp.lmmd_cell(0.05 + 0.1j), 20)
     assert parameters.beam(read["beam"]) == bp.GaussianBeam(0.2)
     assert parameters.axes(read["axes"]) == {"angle": [0.0, 20.0, 40.0]}
+
+
+@pytest.mark.parametrize("name", ["", ".media", ".scale", ".sources", ".values"])
+def test_examples(name):
+    """Those of the docstrings run and print what they say."""
+    module = importlib.import_module(f"beamprop.parameters{name}")
+    ran = doctest.testmod(module, extraglobs={"bp": bp, "np": np})
+    assert ran.attempted > 0
+    assert ran.failed == 0
 
 
 # --- refusals ------------------------------------------------------------------------------------------------
