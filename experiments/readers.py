@@ -62,7 +62,7 @@ def pairs(ds: xr.Dataset, coded: bool = False) -> Content:
 
 
 def codes(ds: xr.Dataset) -> Content:
-    """What a netCDF file holds."""
+    """What a netCDF file or a Zarr store holds, its complex numbers by parts."""
     return pairs(ds, coded=True)
 
 
@@ -109,7 +109,7 @@ def cases() -> list[Case]:
         Case("spectrum .nc", "spectrum.nc", spectrum, codes),
         Case("modes .nc", "modes.nc", modes, codes),
         Case("measures .nc", "measures.nc", measures, codes),
-        Case(".zarr", "measures.zarr", measures.assign(p=plane.p), pairs),
+        Case(".zarr", "measures.zarr", measures.assign(p=plane.p), codes),
         Case(".mat", "fields.mat", many, pairs),
         Case(".vti", "fields.vti", many, on_grid, bp.export),
         Case(".vtr", "uneven.vtr", uneven, on_grid, bp.export),

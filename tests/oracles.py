@@ -112,10 +112,10 @@ def plane_wave_flow(slab, frequency, kx, z0, z):
     of the medium behind.
     """
     w, kx = 2 * np.pi * frequency, np.asarray(kx, complex)
-    one = np.array([float(frequency)])
+    at_frequency = np.array([float(frequency)])
 
     def medium(fluid):
-        rho_z, rho_x, K = (complex(v[0]) for v in fluid.at(one))
+        rho_z, rho_x, K = (complex(v[0]) for v in fluid.at(at_frequency))
         kz = np.sqrt(rho_z * (w**2 / K - (0 if np.isinf(rho_x) else kx**2 / rho_x)))
         return kz, w * rho_z / kz, 0 * kx if np.isinf(rho_x) else kx / (w * rho_x)
 

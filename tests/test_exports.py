@@ -244,7 +244,7 @@ def test_foreign_and_changed_mat_files(tmp_path, field):
         bp.load(path)
     for raw in (b"", b"MATLAB 5.0 MAT-file", bytes(200), b"\x89HDF\r\n\x1a\n" + bytes(600)):
         path.write_bytes(raw)
-        with pytest.raises(ValueError, match=r"a\.mat: expected a \.mat file of version 5"):
+        with pytest.raises(ValueError, match=r"a\.mat: expected a \.mat file"):
             bp.load(path)
 
 

@@ -55,8 +55,9 @@ def field(
     variables : str or list of str
         Of the dataset, by default "p" alone. Others are
 
-        * "v_x", "v_z" [m/s]: particle velocity. v_z is continuous; at an interface v_x is that of the medium behind it.
-        * "intensity_x", "intensity_z" [W/m^2], both by "intensity": time-averaged intensity Re(p v*)/2.
+        * "v_x", "v_z" [m/s]: particle velocity. v_z is continuous; at an interface v_x, and with it intensity_x, is that of the
+          medium behind it.
+        * "intensity_x", "intensity_z" [W/m^2], both by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
         * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.

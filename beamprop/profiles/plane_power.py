@@ -25,7 +25,7 @@ Flux = Callable[[np.ndarray, float], np.ndarray]
 #: Planes whose waves are held at a time, and values of them.
 PLANES, VALUES = 64, 2_000_000
 #: The most nodes of a first sum: a few seconds.
-MOST_NODES = 300_000
+MOST_NODES = 60_000
 #: Rounding of a sum of fluxes, whose real part alone is power, over the sum of their sizes.
 ROUNDING = 1e-14
 

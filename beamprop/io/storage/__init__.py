@@ -1,7 +1,7 @@
 """Datasets to files and back: netCDF, Zarr and MATLAB's format by ending; complex numbers, attributes and provenance round-trip.
 
 A netCDF file holds arrays of real numbers alone, for that is what all readers take: a complex `p` is the pair ``p_real`` and ``p_imag``, which `load`
-joins again. (The compound type {r, i}, which files of 0.1.0 hold, is read by Octave as zeros.) Zarr and MATLAB know complex numbers.
+joins again. (The compound type {r, i}, which files of 0.1.0 hold, is read by Octave as zeros.) Zarr knows complex numbers, MATLAB words too.
 A file appears under its name only when it is complete and is on the disk by then; netCDF and Zarr carry checksums that `load` verifies.
 
 Order of the files here: `whole` and `settled` know paths alone, `guarded` and `seal` bytes, `netcdf`, `zarr_store` and `matlab` a format each.
@@ -105,7 +105,7 @@ def save(
     kind = _kind(path)
     pairs = kind == "netcdf" if split_complex is None else validate.flag(split_complex, "split_complex")
     out = rounded(ds, digits) if digits else ds.copy(deep=False)
-    out = plain(out, pairs) if kind == "netcdf" else split(out) if pairs else out
+    out = plain(out, pairs) if kind != "matlab" else split(out) if pairs else out
     for name in out.variables:
         out[name].encoding = {}
     write_whole(path, lambda draft: _format(kind).write(draft, out, level))

@@ -1,8 +1,8 @@
-"""What netCDF's readers have in common: arrays of real numbers; complex variables as pairs of them, text as codes with a list of words.
+"""What the readers of netCDF and Zarr have in common: arrays of real numbers; complex variables as pairs of them, text as codes with a list of words.
 
 A complex `p` becomes `p_real` and `p_imag`. Words become whole numbers with CF's attributes ``flag_values`` and ``flag_meanings``. Arrays of
 characters would be the other form, but Octave's ``load`` gives up at one, with all variables whose names come later. Whole numbers have 32 bits,
-for ParaView gives up at one of 64.
+for ParaView gives up at one of 64. Zarr's text is in no specification yet, and its complex numbers are.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ LONG = "was_int64"
 
 
 def plain(ds: xr.Dataset, pairs: bool = True) -> xr.Dataset:
-    """A dataset as netCDF's readers take it."""
+    """A dataset as all readers take it."""
     return coded(short(split(ds) if pairs else ds))
 
 

@@ -21,6 +21,7 @@ import numpy as np
 import xarray as xr
 
 from .blocked import BlockedVariables
+from .parts import plain
 from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
@@ -58,7 +59,6 @@ def _compressors() -> list[Any]:
 def write(draft: Path, ds: xr.Dataset, _level: int) -> None:
     """Write a dataset; zlib's level does not concern Zarr."""
     need_zarr()
-    ds = _with_plain_text(ds)
     ds.to_zarr(draft, encoding={name: _encoding(v) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
@@ -85,14 +85,9 @@ def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr
     for where, block in variables.blocks:
         for name, values in block.items():
             into[name][where] = values
-    others = _with_plain_text(rest())
+    others = plain(rest(), pairs=False)
     others.to_zarr(draft, mode="a", encoding={n: _encoding(v) for n, v in others.variables.items()}, consolidated=False)
     record(draft)
-
-
-def _with_plain_text(ds: xr.Dataset) -> xr.Dataset:
-    """Text as Zarr's type `string`: that of a fixed length is in no specification yet."""
-    return ds.assign({name: v.astype(object) for name, v in ds.variables.items() if v.dtype.kind == "U"})
 
 
 def _encoding(v: xr.Variable) -> dict[str, Any]:
