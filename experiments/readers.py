@@ -3,7 +3,7 @@
 ``python experiments/readers.py`` prints a table in Markdown: "numbers" where all of them arrive, "part" where all but those of which the reader
 itself says that it leaves them out, "refusal" where the reader says that it reads nothing. Anything else is an error, in bold, and ends with 1.
 ``--environment DIR`` makes an environment for the readers of PyPI (VTK is 130 MB) where there is none; Debian's packages octave,
-octave-netcdf, netcdf-bin, r-cran-ncdf4, gnumeric and python3-paraview have the others. What is not found is named and left out.
+octave-netcdf, netcdf-bin, r-cran-ncdf4, gnumeric and python3-paraview have the others. What is not here is named and left out.
 """
 
 from __future__ import annotations
@@ -218,11 +218,11 @@ def verdict(reader: Reader, printed: str, said: str, wanted: Content, dims: set[
         return f"**{printed[1:]}**"
     if re.search(r"^!\S", printed, re.MULTILINE):
         return "refusal"
-    found = dict(line.split("\t", 1) for line in printed.splitlines() if "\t" in line)
+    delivered = dict(line.split("\t", 1) for line in printed.splitlines() if "\t" in line)
     if reader.grid and "p_abs" not in " ".join(wanted):
         wanted = {name: values for name, values in wanted.items() if name not in dims}
-    wrong = [name for name, values in wanted.items() if name in found and not same(found[name].split(), values)]
-    missing = [name for name in wanted if name not in found]
+    wrong = [name for name, values in wanted.items() if name in delivered and not same(delivered[name].split(), values)]
+    missing = [name for name in wanted if name not in delivered]
     silent = [name for name in missing if not re.search(rf"\b{name}\b", said)]
     if wrong:
         return f"**other numbers: {', '.join(wrong)}**"
@@ -233,14 +233,14 @@ def verdict(reader: Reader, printed: str, said: str, wanted: Content, dims: set[
     return "part" if missing else "numbers"
 
 
-def same(found: list[str], wanted: list[float] | list[str]) -> bool:
+def same(delivered: list[str], wanted: list[float] | list[str]) -> bool:
     """All numbers to their last digits; phases and magnitudes come from another function here, to the last but one."""
-    if len(found) != len(wanted):
+    if len(delivered) != len(wanted):
         return False
     if wanted and isinstance(wanted[0], str):
-        return found == wanted
+        return delivered == wanted
     try:
-        return np.allclose(np.array(found, float), wanted, rtol=1e-15, atol=0, equal_nan=True)
+        return np.allclose(np.array(delivered, float), wanted, rtol=1e-15, atol=0, equal_nan=True)
     except ValueError:
         return False
 

@@ -93,10 +93,10 @@ def _on_points(ds: xr.Dataset, axes: dict[str, np.ndarray]) -> list[Array]:
             continue
         if v.dtype.kind not in "biufc":
             raise ValueError(f"ds: expected numbers on x, y, z, which ParaView draws, got {name!r} of type {v.dtype}")
-        others = [dim for dim in v.dims if dim not in AXES]
-        for index in itertools.product(*(range(ds.sizes[dim]) for dim in others)):
-            whole = v.isel(dict(zip(others, index, strict=True))).set_dims(shape).transpose(*shape)
-            label = ", ".join(_place(ds, dim, k) for dim, k in zip(others, index, strict=True))
+        named = [dim for dim in v.dims if dim not in AXES]
+        for index in itertools.product(*(range(ds.sizes[dim]) for dim in named)):
+            whole = v.isel(dict(zip(named, index, strict=True))).set_dims(shape).transpose(*shape)
+            label = ", ".join(_place(ds, dim, k) for dim, k in zip(named, index, strict=True))
             arrays += _parts(str(name), whole.values, f" ({label})" if label else "")
             if len(arrays) > MOST:
                 raise ValueError(f"ds: expected at most {MOST} arrays in a file, got more: take some by ds.isel")
