@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .comparison.fields import compare
     from .io.comsol import read_comsol, to_grid
     from .io.datasets import provenance
+    from .io.exports import export
     from .io.storage import load, save
     from .media.attenuation import power_law
     from .media.effective import lmmd_emt, lmmd_emt_slab, standard_emt, wood_mixture
@@ -78,6 +79,7 @@ _HOMES = {
     "comparison.fields": ("compare",),
     "io.comsol": ("read_comsol", "to_grid"),
     "io.datasets": ("provenance",),
+    "io.exports": ("export",),
     "io.storage": ("load", "save"),
     "study.sweep": ("sweep",),
 }
@@ -104,6 +106,7 @@ __all__ = [
     "bloch",
     "compare",
     "delany_bazley_miki",
+    "export",
     "fem",
     "field",
     "fwhm",

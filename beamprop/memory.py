@@ -127,15 +127,21 @@ def _address_space() -> Iterator[float]:
 WAVES_AT_A_TIME, POINTS_AT_A_TIME = 2**17, 2**18
 
 
-def check_field(shape: tuple[int, ...], in_file: bool = False) -> None:
-    """A field map on (frequency, angle, z, x), of which a file takes the answer, and a row of it."""
+def check_field(shape: tuple[int, ...], in_file: bool = False, values: tuple[int, int] = (COMPLEX, 0)) -> None:
+    """A field map on (frequency, angle, z, x), of which a file takes the answer, and a row of it.
+
+    `values` are the bytes that all variables of a point take, and those that are held for one frequency besides.
+    """
     frequencies, angles, planes, points = shape
     row = COMPLEX * points
     # exponentials; copies of x, and rows that are summed together; angles that are made of others
     working = min(1.5e8, 4e4 * points) + (2 + min(planes, 16)) * row + 32.0 * angles * min(angles, 100)
-    answer = 0 if in_file else row * planes * angles * frequencies
+    answer = 0 if in_file else points * planes * angles * (values[0] * frequencies + values[1])
+    of = "p" if values == (COMPLEX, 0) else "each variable"
     many = (
-        f"{frequencies * angles * planes * points:.3g} values of p" if not in_file else f"rows of {points:.3g} points"
+        f"{frequencies * angles * planes * points:.3g} values of {of}"
+        if not in_file
+        else f"rows of {points:.3g} points"
     )
     advice = "ask for fewer points" if in_file else "ask for fewer points, or write the map to a file with save_field"
     check("x", answer + working, many, advice)

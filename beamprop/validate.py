@@ -29,6 +29,8 @@ SHOWN = 120
 
 def shown(value: Any) -> str:
     """A value as a message shows it: shortened, and without an error of its own."""
+    if isinstance(value, complex) and value.imag == 0:  # as it was written, most likely
+        value = value.real
     if isinstance(value, list | tuple) and len(value) > 20:  # all of a long list would be written, to be cut off again
         return f"a {type(value).__name__} of {len(value)}"
     text = type(value).__name__
@@ -107,9 +109,9 @@ def as_number(value: Any, name: str, *, positive: bool = False, tiny: bool = Fal
     return number
 
 
-def as_complex(value: Any, name: str) -> complex:
+def as_complex(value: Any, name: str, expected: str = "a number") -> complex:
     """A complex number, which may be infinite or NaN."""
-    return complex(_scalar(value, name, "a number or a function of frequency"))
+    return complex(_scalar(value, name, expected))
 
 
 def as_count(value: Any, name: str, least: int = 1) -> int:
@@ -139,7 +141,7 @@ def within(values: Any, name: str, *, zero: bool = False) -> None:
     if np.any(bad):
         least = "" if zero else f"{LEAST:g} to "
         kind = f"a magnitude of {least or 'at most '}{MOST:g}, which double precision can compute with"
-        raise refuse(name, kind, _Said(f"{np.atleast_1d(values)[np.atleast_1d(bad)].flat[0]}"))
+        raise refuse(name, kind, np.atleast_1d(values)[np.atleast_1d(bad)].flat[0].item())
 
 
 # --- arrays -----------------------------------------------------------------------------------------------
@@ -204,7 +206,8 @@ def instance(value: Any, cls: Any, name: str) -> Any:
     """An instance of a class."""
     if not isinstance(value, cls) or isinstance(value, type):  # a class has the members of a protocol, too
         article = "an" if cls.__name__[0] in "AEIO" else "a"
-        raise refuse(name, f"{article} {cls.__name__}", value)
+        such = " (GaussianBeam, Profile, Slits)" if cls.__name__ == "Beam" else ""  # a protocol, which nobody makes
+        raise refuse(name, f"{article} {cls.__name__}{such}", value)
     return value
 
 

@@ -43,7 +43,7 @@ DOCUMENTED = {
 LEAKS = re.compile(
     r"(overflow|underflow|invalid value|divide by zero) encountered|Mean of empty|Casting complex|All-NaN"
 )
-NAMED = re.compile(r"[\w.]+( of [\w.]+)?(, [\w. ]+)*: |expected exactly one of |(/|the field|slab)")
+NAMED = re.compile(r"[\w.]+( of [\w.]+)?(, [\w. ]+)*: |(/|the field|slab)")
 #: Outcomes that are as they should be.
 GOOD = ("answer", "answer with a warning", "ValueError", "OSError of a file")
 #: Functions that read or write files, which the system may refuse.

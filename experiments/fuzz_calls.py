@@ -29,6 +29,14 @@ from fuzz_media import MEDIA_CALLS
 
 import beamprop as bp
 
+
+def draw_variables(rng: Any) -> Any:
+    """What a field is asked for."""
+    return pick(
+        rng, ("p", "v_x", ["v_z", "intensity"], "power_through", ["p", "v_x", "v_z", "intensity", "power_through"])
+    )
+
+
 FREQUENCY, X, Z, ANGLE = draw_axis(500, 5000), draw_axis(-2, 2), draw_axis(0, 1), draw_axis(-80, 80)
 #: Of questions that take longer.
 FEW, ONE_OR_TWO = draw_axis(1000, 3000, 3), draw_axis(-60, 60, 2)
@@ -92,7 +100,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
     "field": (
         bp.field,
         {"slab": draw_slab, "beam": draw_beam, "frequency": FEW, "x": X, "z": Z},
-        {"angle": ANGLE, "rtol": lambda r: 1e-6},
+        {"angle": ANGLE, "rtol": lambda r: 1e-6, "variables": draw_variables},
     ),
     "field, periodic": (
         bp.field,
@@ -104,7 +112,7 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
             "z": Z,
             "boundary": lambda r: "periodic",
         },
-        {"period": magnitude},
+        {"period": magnitude, "variables": draw_variables},
     ),
     "beam_width": (
         bp.beam_width,
@@ -126,13 +134,18 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
     "save": (
         bp.save,
         {"ds": draw_answer, "path": draw_text_file},
-        {"split_complex": draw_flag, "compression": lambda r: 3},
+        {"split_complex": draw_flag, "compression": lambda r: 3, "digits": lambda r: 4},
+    ),
+    "export": (
+        bp.export,
+        {"ds": draw_answer, "path": lambda r: draw_text_file(r).with_suffix(pick(r, (".mat", ".vti", ".vtr", ".csv")))},
+        {},
     ),
     "load": (bp.load, {"path": draw_text_file}, {}),
     "save_field": (
         bp.save_field,
         {"path": draw_text_file, "slab": draw_slab, "beam": draw_beam, "frequency": lambda r: 2500.0, "x": X, "z": Z},
-        {"memory": magnitude},
+        {"memory": magnitude, "variables": draw_variables},
     ),
     "provenance": (bp.provenance, {"ds": draw_answer}, {}),
     "to_grid": (bp.to_grid, {"ds": draw_nodes, "x": lambda r: [0.0, 0.1], "z": lambda r: [0.0, 0.1]}, {}),

@@ -6,6 +6,7 @@ What the accuracy study's reference computes too, is its: scattering matrices, l
 * `bloch_phase`: the same of one cell.
 * `emt_transmissivity`: the paper's Eq. (11), a homogeneous slab without lateral motion.
 * `air_beam`: the angular-spectrum integral in a homogeneous fluid, trapezoid rule on a bent contour.
+* `plane_wave_flow`, `open_flow`: pressure and particle velocity by 2 x 2 matrices from face to face, and summed as `open_field` is.
 * `open_field`: the open-space field by the trapezoid rule on a bent contour that passes below the poles and the branch point on
   the right and above those on the left.
 """
@@ -17,6 +18,8 @@ import numpy as np
 from accuracy_study.reference import many_digits
 from accuracy_study.reference.medium import Medium
 from accuracy_study.reference.quadrature import field_sum
+
+import beamprop as bp
 
 
 def _isotropic(layers):
@@ -97,3 +100,78 @@ def open_field(slab, frequency, spectrum, z0, x, z, **contour):
         return medium.response(k, np.asarray(z), z0)
 
     return field_sum(lambda k, kz: spectrum(k), response, kx, weight, None, np.asarray(x))
+
+
+# --- particle velocity ------------------------------------------------------------------------------------
+
+
+def plane_wave_flow(slab, frequency, kx, z0, z):
+    """p, v_x and v_z at depths z, (Z, n) each, of plane waves kx of unit pressure on z0: products of 2 x 2 matrices from face to face.
+
+    The state (p, v_z) is carried forward from the near face, which is stable for slabs that are not opaque. At an interface v_x is that
+    of the medium behind.
+    """
+    w, kx = 2 * np.pi * frequency, np.asarray(kx, complex)
+    at_frequency = np.array([float(frequency)])
+
+    def medium(fluid):
+        rho_z, rho_x, K = (complex(v[0]) for v in fluid.at(at_frequency))
+        kz = np.sqrt(rho_z * (w**2 / K - (0 if np.isinf(rho_x) else kx**2 / rho_x)))
+        return kz, w * rho_z / kz, 0 * kx if np.isinf(rho_x) else kx / (w * rho_x)
+
+    def across(fluid, d):
+        kz, impedance, _ = medium(fluid)
+        c, s = np.cos(kz * d), 1j * np.sin(kz * d)
+        return np.array([[c, s * impedance], [s / impedance, c]])
+
+    def times(a, b):
+        return np.einsum("ij...,jk...->ik...", a, b)
+
+    unit = np.array([[1 + 0 * kx, 0 * kx], [0 * kx, 1 + 0 * kx]])
+    places, m, depth = (
+        [],
+        unit,
+        0.0,
+    )  # of each layer: its near face, fluid, and the matrix from the slab's near face to there
+    for cell, periods in slab.segments:
+        for layer in cell.layers * periods:
+            if isinstance(layer, bp.Membrane):  # p behind = p in front + i w mass v_z
+                m = times(np.array([[1 + 0 * kx, 1j * w * complex(layer.areal_density) + 0 * kx], unit[1]]), m)
+                continue
+            places.append((depth, layer.fluid, m))
+            m, depth = times(across(layer.fluid, layer.thickness), m), depth + layer.thickness
+    (kz1, before, lateral1), (kz2, after, lateral2) = medium(slab.before), medium(slab.after)
+    launch = np.exp(-1j * kz1 * z0)
+    # t = m11 (1 + r) + m12 (1 - r)/Z1 and t/Z2 = m21 (1 + r) + m22 (1 - r)/Z1
+    a, b = m[0, 0] - after * m[1, 0], (m[0, 1] - after * m[1, 1]) / before
+    r = -(a + b) / (a - b)
+    near = np.array([1 + r, (1 - r) / before]) * launch
+    far = np.einsum("ij...,j...->i...", m, near)
+    rows, on_it = [], 1e-12  # depths this near to an interface lie on it
+    for at in z:
+        if at < 0 or (at == 0 and not places):
+            back = r * np.exp(-1j * kz1 * at)
+            forth = np.exp(1j * kz1 * at)
+            p, v_z, lateral = (forth + back) * launch, (forth - back) * launch / before, lateral1
+        elif at >= depth - on_it:
+            wave = np.exp(1j * kz2 * (at - depth))
+            p, v_z, lateral = far[0] * wave, far[1] * wave, lateral2
+        else:
+            start, fluid, to_here = [place for place in places if place[0] <= at + on_it][-1]
+            p, v_z = np.einsum("ij...,j...->i...", times(across(fluid, at - start), to_here), near)
+            lateral = medium(fluid)[2]
+        rows.append((p, lateral * p, v_z))
+    return np.array(rows).transpose(1, 0, 2)
+
+
+def open_flow(slab, frequency, spectrum, z0, x, z, **contour):
+    """p, v_x and v_z on (z, x) in open space, (3, Z, X): the trapezoid rule on the bent contour and on its mirror image about the origin."""
+    k0 = (
+        2 * np.pi * frequency / complex(slab.before.at(frequency).bulk_modulus / slab.before.at(frequency).rho_z) ** 0.5
+    )
+    kx, weight = bent_contour(k0.real, **contour)
+    flow = 0
+    for k in (kx, -kx):
+        waves = (spectrum(k) * weight / (2 * np.pi))[:, None] * np.exp(1j * np.multiply.outer(k, x))
+        flow = flow + plane_wave_flow(slab, frequency, k, z0, z) @ waves
+    return flow

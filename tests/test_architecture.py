@@ -251,7 +251,10 @@ def test_public_names_have_one_home():
 
 
 #: Files of the storage package, in the order in which they may import one another.
-STORAGE = ["blocked", "parts", "whole", "settled", "guarded", "seal", "netcdf", "zarr_store", "__init__"]
+STORAGE = [
+    *("blocked", "parts", "rounding", "whole", "settled", "guarded", "seal"),
+    *("netcdf", "zarr_store", "matlab", "__init__"),
+]
 
 
 @pytest.mark.parametrize("name", STORAGE)

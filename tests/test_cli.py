@@ -125,7 +125,11 @@ CELL_OPTIONS = [
 
 
 def transmission(*options):
-    return from_json(json.loads(good("spectrum", *options, "--angle", "20", "--json").stdout)["data_vars"]["t"]["data"])
+    return from_json(
+        json.loads(good("spectrum", "--frequency", "2500", *options, "--angle", "20", "--json").stdout)["data_vars"][
+            "t"
+        ]["data"]
+    )
 
 
 @pytest.mark.parametrize(

@@ -296,13 +296,13 @@ def test_command_on_a_grid(files):
     [
         (["compare", "nodes.txt", "nodes.txt"], "a, b: expected a grid at least on one side"),
         (["compare", "ours.nc", "ours.nc", "--grid", "0:1:3", "0:1:3"], "grid: expected none"),
-        (["compare", "ours.nc", "ours.nc", "--angle-unit", "rad"], "angle_unit: expected none"),
-        (["compare", "ours.nc", "nodes.txt", "--angle-unit", "gon"], "angle_unit: expected one of deg"),
-        (["compare", "ours.nc", "nodes.txt", "--length-unit", "furlong"], "length_unit: expected one of m, mm"),
+        (["compare", "ours.nc", "ours.nc", "--angle-unit", "rad"], "--angle-unit: expected none"),
+        (["compare", "ours.nc", "nodes.txt", "--angle-unit", "gon"], "--angle-unit: expected one of deg"),
+        (["compare", "ours.nc", "nodes.txt", "--length-unit", "furlong"], "--length-unit: expected one of m, mm"),
         (["compare", "ours.nc", "nodes.txt", "--grid", "0:1:3"], "'--grid' requires 2 arguments"),
-        (["compare", "ours.nc", "nodes.txt", "--grid", "1:0:3", "0:1:3"], "x: expected"),
+        (["compare", "ours.nc", "nodes.txt", "--grid", "1:0:3", "0:1:3"], "--grid: expected"),
         (["compare", "ours.nc", "nodes.txt", "--output", "c.nc", "--plot", "c.png"], "plot: expected .* on a grid"),
-        (["convert", "ours.nc", "c.nc", "--length-unit", "mm"], "length_unit: expected none"),
+        (["convert", "ours.nc", "c.nc", "--length-unit", "mm"], "--length-unit: expected none"),
         (["convert", "ours.nc", "c.nc", "--grid", "0:1:3", "0:1:3"], "grid: expected none"),
     ],
 )

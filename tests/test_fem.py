@@ -313,7 +313,7 @@ def test_refusals_name_the_argument(name, change):
 
 def test_without_the_library_the_message_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "skfem", None)
-    with pytest.raises(ImportError, match=r'pip install "beamprop\[fem\]"'):
+    with pytest.raises(ImportError, match=r'pip install -e "\.\[fem\]" in the checkout'):
         fem.field(Slab(lmmd_cell(), 2), BEAM, FREQUENCY, *ONE, PERIOD)
 
 

@@ -303,9 +303,9 @@ def test_what_xarray_made_of_our_file_is_read(tmp_path, small, ending):
     if ending == "nc":
         with xr.open_dataset(tmp_path / "a.nc", engine="h5netcdf") as opened:
             assert netcdf.RECORD in opened.attrs
-            opened.drop_vars("t").isel(kx_over_k0=[0]).to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
+            opened.drop_vars(["t_real", "t_imag"]).isel(kx_over_k0=[0]).to_netcdf(tmp_path / "b.nc", engine="h5netcdf")
     else:
-        with xr.open_zarr(tmp_path / "a.zarr", consolidated=False) as opened:
+        with xr.open_zarr(tmp_path / "a.zarr") as opened:
             assert opened.attrs == small.attrs
             opened.drop_vars("t").isel(kx_over_k0=[0]).to_zarr(tmp_path / "b.zarr", consolidated=False)
     xr.testing.assert_identical(bp.load(tmp_path / f"b.{ending}"), small.drop_vars("t").isel(kx_over_k0=[0]))

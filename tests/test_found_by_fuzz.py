@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 
 import beamprop as bp
+from beamprop.contour import check_points, stretches
+from beamprop.contour.paths import Extent
 from beamprop.fields import evaluate
 
 SLAB = bp.Slab(bp.lmmd_cell(), 5)
@@ -102,3 +104,17 @@ def test_positions_as_many_as_plane_waves_need(monkeypatch):
     monkeypatch.setattr(evaluate, "beam_sum", lambda s, b, sol, h, x: sizes.append(x.size) or plain(s, b, sol, h, x))
     bp.beam_width(SLAB, bp.Slits(0.05, 0.2, 1, z0=-0.2), 2306.0, rtol=1e-4)
     assert 0 < max(sizes) < 5000
+
+
+def test_planes_that_span_more_half_wavelengths_than_an_integer_holds():
+    """Darkness of planes beside those within a window; far apart each has no other beside it."""
+    z = np.array([0.0, 1e-6, 1e15])
+    size = np.array([1.0, 0.1, 1.0])
+    np.testing.assert_array_equal(check_points._darkness(size, z, 1e-5), [1.0, 0.1, 1.0])
+    np.testing.assert_array_equal(check_points._darkness(size, z, 1e-12), [1.0, 0.1, 1.0])
+
+
+def test_a_plan_of_stretches_for_a_response_without_rounding():
+    """A response may be exact at the points looked at, such as that of no layers."""
+    extent = Extent(46.0, 46.0, 50.0, 1.0, 0.2, 0.5)
+    assert stretches.plan_stretches(extent, 0.1, 1e-8, 0.0) == stretches.plan_stretches(extent, 0.1, 1e-8, 1e-17)

@@ -36,3 +36,22 @@ def test_p_inside_opaque_periods(name, monkeypatch):
     assert calls
     assert np.abs(want[-1]).max() < 1e-100
     np.testing.assert_allclose(got / want, 1, rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("name", CELLS)
+def test_velocity_inside_opaque_periods(name):
+    """(p, v_z) at a depth carried back through the rest of a layer is p at a depth in front of it, where both wave's sizes count."""
+    slab = bp.Slab(CELLS[name], 3)
+    k = np.array([0.013, 0.4, 0.99, 1.3, 2.1]) * K0
+    w, ends = 2 * np.pi * F, 0.0
+    for layer in CELLS[name] * 3:
+        rho, K = complex(layer.fluid.density), complex(layer.fluid.bulk_modulus)
+        z = ends + layer.thickness * np.array([0.2, 0.21, 0.93, 0.95])
+        ends += layer.thickness
+        p, v = (through(sample(slab, F), -0.05, q)(k + 0j, z) for q in ("p", "v_z"))
+        kz, d = np.sqrt(rho * (w**2 / K - k**2 / rho)), np.diff(z)[::2, None]
+        back = np.cos(kz * d) * p[1::2] - 1j * w * rho * np.sin(kz * d) / kz * v[1::2]
+        np.testing.assert_allclose(back / p[::2], 1, rtol=0, atol=1e-11)
+        along = through(sample(slab, F), -0.05, "v_x")(k + 0j, z)
+        np.testing.assert_allclose(along * w * rho / p, 1, rtol=0, atol=1e-11)
+    assert np.abs(p).max() < 1e-80

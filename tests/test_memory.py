@@ -42,6 +42,10 @@ QUESTIONS = {
     "field, a row of 2e6 even x": "lambda: bp.field(slab, beam, 2500.0, np.linspace(-1, 1, 2_000_000), 0.1)",
     "field, 20 rows of 3e5 x": "lambda: bp.field(slab, beam, 2500.0, np.geomspace(1e-3, 1, 300_000), np.linspace(0, 1, 20))",
     "field, a map of 4096 x 4000": "lambda: bp.field(slab, beam, 2500.0, np.linspace(-1, 1, 4096), np.linspace(0, 1, 4000))",
+    "field, all variables of a map of 2048 x 1000": "lambda: bp.field(slab, beam, 2500.0, np.linspace(-1, 1, 2048), "
+    "np.linspace(0, 1, 1000), variables=('p', 'v_x', 'v_z', 'intensity', 'power_through'))",
+    "field, the intensity of a map of 2048 x 2000": "lambda: bp.field(slab, beam, 2500.0, np.linspace(-1, 1, 2048), "
+    "np.linspace(0, 1, 2000), variables='intensity')",
     "field, many angles": "lambda: bp.field(slab, beam, 2500.0, np.linspace(-1, 1, 1024), np.linspace(0, 1, 20), "
     "angle=np.linspace(-40, 40, 800))",
     "field, a rotated beam from afar": "lambda: bp.field(slab, bp.GaussianBeam(0.2, z0=-1e4, form='rotated'), 2500.0, 0.0, 0.1)",

@@ -57,3 +57,16 @@ def test_it_is_taken_by_the_other_questions(question):
     found = question(SLAB, beam, 2300.0)
     assert np.all(np.isfinite(found["fwhm_out" if question is bp.beam_width else "fwhm"]))
     assert bp.provenance(found)["beam"]["source"].endswith("TwoBeams")
+
+
+def test_its_velocity_and_power():
+    """v_x takes the spectrum times kx of any source; v of the sum is the sum of the parts'."""
+    beam, x = TwoBeams(0.4, 20.0, -0.1), np.linspace(-0.6, 0.8, 41)
+    ask = {"frequency": 2300.0, "x": x, "z": [-0.05, 0.2, SLAB.thickness], "variables": ["v_x", "v_z", "power_through"]}
+    found = bp.field(SLAB, beam, **ask)
+    parts = [bp.field(SLAB, part, **ask) for part in beam.parts]
+    for name in ("v_x", "v_z"):
+        wanted = sum(part[name] for part in parts)
+        np.testing.assert_allclose(found[name], wanted, rtol=0, atol=1e-7 * float(np.abs(wanted).max()))
+    apart = sum(part.power_through for part in parts)  # but for what interferes between beams 0.4 m apart
+    np.testing.assert_allclose(found.power_through, apart, rtol=0.01)

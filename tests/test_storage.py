@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+import warnings
 
 import h5py
 import netCDF4
@@ -28,7 +29,12 @@ DATASETS = {
     "bloch": lambda: bp.bloch(SLAB.cell, [F, 2600.0], kx=[0.0, 3.0]),
     "widths": lambda: bp.beam_width(SLAB, BEAM, [2400.0, F]),
     "scalar widths": lambda: bp.beam_width(SLAB, BEAM, F),
+    "measures": lambda: bp.beam_measures(SLAB, BEAM, [2400.0, F]),
+    "modes": lambda: bp.guided_modes(LOSSLESS, [2400.0, F]),
 }
+LOSSLESS = bp.Slab(bp.lmmd_cell(rho_m=0.05, delta_rho=0), 20)
+#: What becomes of a netCDF file's variables, by hand: pairs of real ones for complex ones, codes for words.
+WORDS = {"side": ["reflected", "transmitted"]}
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +57,12 @@ def small():
         {"path": "a.nc"},
         {"path": "a.zarr"},
         {"path": "a.nc", "split_complex": True},
+        {"path": "a.nc", "split_complex": False},
         {"path": "a.zarr", "split_complex": True},
         {"path": "a.nc", "compression": 5},
+        {"path": "a.mat"},
     ],
-    ids=["nc", "zarr", "nc split", "zarr split", "nc compressed"],
+    ids=["nc", "zarr", "nc split", "nc compound", "zarr split", "nc compressed", "mat"],
 )
 def test_round_trip(tmp_path, datasets, name, options):
     """load gives back what save was given: values to the last bit, dims, coordinates and attributes."""
@@ -120,34 +128,197 @@ def test_attributes_are_what_every_format_takes(datasets, name):
 # --- other readers ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["field", "scalar field", "scattering", "bloch"])
-def test_netcdf4_and_h5py_read_our_files(tmp_path, datasets, name):
-    """Both read complex variables as complex numbers, with units."""
+def plainly(ds):
+    """What the file holds, by name: (dims, real numbers, units)."""
+    plain = {}
+    for name, v in ds.variables.items():
+        if v.dtype.kind == "c":
+            plain |= {
+                f"{name}_{part}": (v.dims, getattr(v.values, part), v.attrs["units"]) for part in ("real", "imag")
+            }
+        else:
+            values = v.values if v.dtype.kind != "U" else [WORDS[name].index(word) for word in v.values]
+            plain[name] = (v.dims, values, v.attrs["units"])
+    return plain
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_other_readers_read_our_files(tmp_path, datasets, name):
+    """Arrays of real numbers alone, with units: netCDF4, h5py, and xarray with either engine and by dask."""
     ds = datasets[name]
     bp.save(ds, tmp_path / "a.nc")
-    with netCDF4.Dataset(tmp_path / "a.nc", auto_complex=True) as nc, h5py.File(tmp_path / "a.nc") as h5:
-        for variable, values in ds.variables.items():
-            np.testing.assert_array_equal(np.ma.getdata(nc[variable][...]), values)
-            np.testing.assert_array_equal(h5[variable][()], values)
-            assert nc[variable].units == values.attrs["units"]
-            assert nc[variable].dimensions == values.dims
-        assert "p" not in ds or h5["p"].dtype == complex
-        assert nc.provenance == ds.attrs["provenance"]
-
-
-def test_split_files_are_plain(tmp_path, datasets):
-    """With split_complex every variable is real: a reader that does not know compound types sees pairs."""
-    ds = datasets["field"]
-    bp.save(ds, tmp_path / "a.nc", split_complex=True)
-    with netCDF4.Dataset(tmp_path / "a.nc") as nc:
-        assert {"p_real", "p_imag"} <= set(nc.variables)
-        assert "p" not in nc.variables
+    with (
+        netCDF4.Dataset(tmp_path / "a.nc") as nc,
+        h5py.File(tmp_path / "a.nc") as h5,
+        xr.open_dataset(tmp_path / "a.nc", engine="netcdf4") as other,
+        xr.open_dataset(tmp_path / "a.nc", engine="h5netcdf", chunks={}) as lazy,
+    ):
         assert not nc.cmptypes
-        assert all(v.dtype.kind == "f" for v in nc.variables.values())
-        np.testing.assert_array_equal(nc["p_real"][...] + 1j * nc["p_imag"][...], ds.p)
-        assert nc["p_real"].units == "Pa"
-    with xr.open_dataset(tmp_path / "a.nc", engine="netcdf4") as plain:
-        np.testing.assert_array_equal(plain.p_imag, ds.p.imag)
+        assert set(plainly(ds)) == set(nc.variables) == set(lazy.variables)
+        for variable, (dims, values, units) in plainly(ds).items():
+            for theirs in (
+                np.ma.getdata(nc[variable][...]),
+                h5[variable][()],
+                other[variable].values,
+                lazy[variable].values,
+            ):
+                assert theirs.dtype.kind in "if"
+                np.testing.assert_array_equal(theirs, values)
+            assert nc[variable].dimensions == other[variable].dims == dims
+            assert nc[variable].units == other[variable].units == lazy[variable].units == units
+        assert nc.provenance == lazy.provenance == ds.attrs["provenance"]
+        assert "side" not in ds.dims or other["side"].flag_meanings == "reflected transmitted"
+
+
+@pytest.mark.parametrize("name", DATASETS)
+def test_plain_zarr(tmp_path, datasets, name):
+    """A plain open_zarr finds the metadata in one place and warns of nothing; complex numbers are what they were, words are codes."""
+    bp.save(datasets[name], tmp_path / "a.zarr")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        plain = xr.open_zarr(tmp_path / "a.zarr", consolidated=True).load()
+    for variable, values in datasets[name].variables.items():
+        wanted = values.values if values.dtype.kind != "U" else [WORDS[variable].index(word) for word in values.values]
+        np.testing.assert_array_equal(plain[variable], wanted)
+        assert plain[variable].dtype.kind in "ifc"
+        assert plain[variable].attrs["units"] == values.attrs["units"]
+
+
+def test_attributes_are_plain_text(tmp_path, datasets):
+    """Text of a fixed length, netCDF's characters, which is what Octave reads; longer text than HDF5 takes is kept as it is."""
+    long = "é" * 2**17
+    bp.save(datasets["field"].assign_attrs(long=long, place="Ångström"), tmp_path / "a.nc")
+    with h5py.File(tmp_path / "a.nc") as h5:
+        assert h5py.check_string_dtype(h5["p_real"].attrs.get_id("units").dtype).length == 2
+        assert h5py.check_string_dtype(h5.attrs.get_id("provenance").dtype).length > 100
+    assert bp.load(tmp_path / "a.nc").attrs["long"] == long
+    with netCDF4.Dataset(tmp_path / "a.nc") as nc:
+        assert (nc.long, nc.place) == (long, "Ångström")
+
+
+@pytest.mark.parametrize("name", ["field", "scalar field"])
+def test_compound_types_on_request(tmp_path, datasets, name):
+    """What 0.1.0 wrote, and split_complex=False writes: netCDF4 and h5py read it as complex numbers, and so does load."""
+    bp.save(datasets[name], tmp_path / "a.nc", split_complex=False)
+    with netCDF4.Dataset(tmp_path / "a.nc", auto_complex=True) as nc, h5py.File(tmp_path / "a.nc") as h5:
+        np.testing.assert_array_equal(np.ma.getdata(nc["p"][...]), datasets[name].p)
+        assert h5["p"].dtype == complex
+    xr.testing.assert_identical(bp.load(tmp_path / "a.nc"), datasets[name])
+
+
+def test_infinite_parts_stay_apart(tmp_path):
+    """1j times infinity would have a real part of NaN."""
+    ds = xr.Dataset({"a": ("x", np.array([complex(2, np.inf), complex(-np.inf, 1), complex(-0.0, np.nan)]))})
+    for name in ("a.nc", "a.zarr", "a.mat"):
+        bp.save(ds, tmp_path / name)
+        again = bp.load(tmp_path / name)
+        np.testing.assert_array_equal(again.a.values.view(float), ds.a.values.view(float))
+        assert "long_name" not in again.a.attrs
+        assert np.signbit(again.a.values.real[2])
+
+
+def test_a_name_that_a_part_would_take(tmp_path, datasets):
+    """Nothing is overwritten by a part of another variable."""
+    ds = datasets["field"]
+    with pytest.raises(ValueError, match=r"^ds: .*'p_real'"):
+        bp.save(ds.assign(p_real=ds.p.real), tmp_path / "a.nc")
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("path", ["a.nc", "a.zarr", "a.mat"])
+def test_words_of_all_kinds(tmp_path, path):
+    """Blanks, letters of other languages, nothing at all, one word, two dimensions, objects and NumPy's text."""
+    words = np.array([["a b", "", "größe"], ["x", "a b", "0"]])
+    ds = xr.Dataset({"w": (("y", "x"), words), "one": ((), "alone")}, {"x": ["p", "q q", "r"], "y": [1, 2]})
+    bp.save(ds.assign(w=ds.w.astype(object)), tmp_path / path)
+    xr.testing.assert_identical(bp.load(tmp_path / path), ds)
+
+
+@pytest.mark.filterwarnings("ignore:.*not part in the Zarr format 3")
+def test_words_in_older_files(tmp_path):
+    """Text as xarray writes it, and as save did before: NumPy's text comes back, of either type."""
+    ds = xr.Dataset({"word": ("x", ["reflected", "größer"]), "one": ((), "alone")})
+    ds.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    ds.astype(object).to_zarr(tmp_path / "a.zarr", consolidated=False)
+    for name in ("a.nc", "a.zarr"):
+        again = bp.load(tmp_path / name)
+        xr.testing.assert_identical(again, ds)
+        assert again.word.dtype.kind == again.one.dtype.kind == "U"
+
+
+def test_attributes_that_look_like_ours(tmp_path):
+    """A file of somebody else's, with our attributes and without their sense: read as it stands."""
+    ds = xr.Dataset(
+        {
+            "a_real": ("x", [1.0, 2.0], {"part_of": "a"}),  # without its other part
+            "b_real": ("x", [1.0, 2.0], {"part_of": "b"}),
+            "b_imag": ("y", [1.0, 2.0, 3.0], {"part_of": "b"}),  # on another dimension
+            "c_real": ("x", [1.0, 2.0], {"part_of": np.array([1, 2])}),
+            "d": ("x", [0, 5], {"flag_words": '["one", "two"]'}),  # a code too large
+            "e": ("x", [-1, 0], {"flag_words": '["one", "two"]'}),
+            "f": ("x", [0.0, 1.0], {"flag_words": '["one", "two"]'}),
+            "g": ("x", [0, 0], {"flag_words": '{"one": 1}'}),
+            "h": ("x", [0, 1], {"flag_words": "[[[[["}),
+            "i": ("x", [0, 1], {"flag_words": np.array([1, 2])}),
+        }
+    )
+    ds.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
+    xr.testing.assert_identical(bp.load(tmp_path / "a.nc"), ds)
+
+
+def test_endings_of_export_are_told(tmp_path, small):
+    with pytest.raises(ValueError, match=r"^path: .*got 'a.csv' \(which export writes\)"):
+        bp.save(small, tmp_path / "a.csv")
+
+
+# --- rounded ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("path", ["a.nc", "a.zarr", "a.mat"])
+@pytest.mark.parametrize("digits", [1, 4, 6, 9, 15])
+@pytest.mark.parametrize("name", ["field", "scattering", "measures"])
+def test_rounded_storage_states_its_error(tmp_path, datasets, path, digits, name):
+    """At most half of the last digit of the largest value in either part, and what the attribute says; coordinates are exact."""
+    ds = datasets[name]
+    bp.save(ds, tmp_path / path, digits=digits)
+    again = bp.load(tmp_path / path)
+    assert {n: v.dtype for n, v in again.variables.items()} == {n: v.dtype for n, v in ds.variables.items()}
+    for variable, v in ds.data_vars.items():
+        if v.dtype.kind == "i":
+            assert again[variable].identical(v)
+            continue
+        stated = again[variable].attrs["rounding_error"]
+        off = again[variable].values - v.values
+        assert max(np.nanmax(np.abs(off.real)), np.nanmax(np.abs(off.imag))) <= stated
+        assert stated <= 0.5 * 10.0**-digits * np.nanmax(np.abs(v.values))
+        np.testing.assert_array_equal(np.isnan(again[variable]), np.isnan(v))
+    for coordinate in ds.coords:
+        xr.testing.assert_equal(again[coordinate], ds[coordinate])
+
+
+def test_rounded_files_are_smaller(tmp_path):
+    """Four digits of a field take less than a third; errors of two roundings add up."""
+    ds = bp.field(SLAB, BEAM, F, np.linspace(-0.5, 0.5, 300), np.linspace(0, 0.2, 200))
+    bp.save(ds, tmp_path / "a.nc")
+    bp.save(ds, tmp_path / "b.nc", digits=4)
+    assert 3 * (tmp_path / "b.nc").stat().st_size < (tmp_path / "a.nc").stat().st_size
+    once = bp.load(tmp_path / "b.nc")
+    bp.save(once, tmp_path / "c.nc", digits=2)
+    assert bp.load(tmp_path / "c.nc").p.attrs["rounding_error"] > 10 * once.p.attrs["rounding_error"]
+    assert (
+        float(abs(bp.load(tmp_path / "c.nc").p - ds.p).max())
+        <= 2**0.5 * bp.load(tmp_path / "c.nc").p.attrs["rounding_error"]
+    )
+
+
+def test_rounding_what_has_no_digits(tmp_path):
+    """Zeros, infinities and magnitudes at the ends of double precision pass; each is what it was or within the stated error."""
+    for largest in (0.0, 5e-324, 1e-300, 1e-40, 1e38, 1e39, 1.7e308):
+        ds = xr.Dataset({"a": ("x", np.array([largest, -largest / 3, np.inf, -np.inf, np.nan, 0.0]))})
+        bp.save(ds, tmp_path / "a.nc", digits=3)
+        again = bp.load(tmp_path / "a.nc").a
+        np.testing.assert_array_equal(again[2:], ds.a[2:])
+        assert float(abs(again[:2] - ds.a[:2]).max()) <= again.attrs["rounding_error"]
 
 
 def test_we_read_what_xarray_and_netcdf4_wrote(tmp_path, datasets):
@@ -186,7 +357,7 @@ for name in ("b.nc", "c.nc"):
 try:
     bp.save(ds, {str(tmp_path / "d.zarr")!r})
 except ImportError as error:
-    assert "beamprop[zarr]" in str(error), error
+    assert 'pip install -e ".[zarr]" in the checkout' in str(error), error
 else:
     raise AssertionError("saved without zarr")
 """,
@@ -321,6 +492,10 @@ def test_missing_folders_and_files(tmp_path, small, name):
         ({"compression": 10}, "^compression:"),
         ({"compression": -1}, "^compression:"),
         ({"compression": "a"}, "^compression:"),
+        ({"digits": 0}, "^digits:"),
+        ({"digits": 16}, "^digits:"),
+        ({"digits": 2.5}, "^digits:"),
+        ({"digits": True}, "^digits:"),
     ],
 )
 def test_wrong_arguments_of_save(tmp_path, small, change, match):

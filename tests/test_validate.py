@@ -209,7 +209,7 @@ def test_objects():
         lambda: bp.beam_width(SLAB, None, 2500.0),
         lambda: bp.fem.plan(SLAB, 3, 2500.0, 1.0),
     ):
-        with pytest.raises(ValueError, match=r"^beam: expected a Beam, got "):
+        with pytest.raises(ValueError, match=r"^beam: expected a Beam \(GaussianBeam, Profile, Slits\), got "):
             ask()
     with pytest.raises(ValueError, match=r"^progress: expected True, False or a function, got 'yes'"):
         bp.field(SLAB, BEAM, 2500.0, 0.0, 0.1, progress="yes")

@@ -89,7 +89,7 @@ def single_option(**options: Any) -> tuple[str, Any]:
     """The option that is given, by name and value."""
     given = {name: value for name, value in options.items() if value is not None}
     if len(given) != 1:
-        raise ValueError(f"expected exactly one of {', '.join(options)}, got {', '.join(given) or 'none'}")
+        raise ValueError(f"{', '.join(options)}: expected exactly one of them, got {', '.join(given) or 'none'}")
     return next(iter(given.items()))
 
 

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from .. import memory, validate
-from ..contour.error import uniform_budget
-from ..fields.question import fill, prepare
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
 from .field_question import checked_question, labelled
+from .field_variables import bytes_held, kinds, no_errors, powers, row_of
 
 
 def field(
@@ -28,8 +28,10 @@ def field(
     period: float | None = None,
     rtol: float = 1e-8,
     progress: Progress = False,
+    *,
+    variables: str | Sequence[str] = ("p",),
 ) -> xr.Dataset:
-    """Total pressure of a beam in front of, inside and behind a slab.
+    """Total pressure of a beam in front of, inside and behind a slab; particle velocity, intensity and power on request.
 
     Parameters
     ----------
@@ -50,12 +52,24 @@ def field(
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of frequencies that is worked through.
 
+    variables : str or list of str
+        Of the dataset, by default "p" alone. Others are
+
+        * "v_x", "v_z" [m/s]: particle velocity. v_z is continuous; at an interface v_x, and with it intensity_x, is that of the
+          medium behind it.
+        * "intensity_x", "intensity_z" [W/m^2], both by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
+        * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
+          through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
+          ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
+
     Returns
     -------
     Dataset
         `p` on (frequency, angle, z, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
         open fields: the largest difference between two contours of integration that share no error term, and what planes
-        gain that are made of others.
+        gain that are made of others. Each other variable has its own, ``error_estimate_v_x`` for v_x: over the largest |v_x| of
+        the plane, of an intensity over half the product of the largest |p| and |v|, of a power over that of the incident
+        beam.
 
     Warns
     -----
@@ -74,14 +88,21 @@ def field(
     >>> ds = bp.field(slab, beam, 2500.0, x=np.linspace(-1, 1, 501), z=[0.0, slab.thickness])
     >>> dict(ds.p.sizes), bool(ds.error_estimate < 1e-8)
     ({'z': 2, 'x': 501}, True)
+    >>> flow = bp.field(slab, beam, 2500.0, x=0.0, z=[-0.01, 0.0], variables=["v_z", "intensity", "power_through"])
+    >>> list(flow)[:4], flow.v_z.attrs["units"]
+    (['v_z', 'intensity_x', 'intensity_z', 'power_through'], 'm/s')
     """
     validate.flag_or_function(progress, "progress")
-    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
-    memory.check_field(question.shape)
-    p, errors = np.empty(question.shape, complex), np.empty(question.shape[:2])
-    worst = uniform_budget(1, 0.0)
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables)
+    names = labels.variables
+    memory.check_field(question.shape, values=bytes_held(names))
+    values: dict[str, np.ndarray] = {name: np.empty(question.shape, kind) for name, kind in kinds(names).items()}
+    errors = no_errors(names, question.shape)
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
-        budget = fill(prepare(question, i), slice(None), slice(None), p[i])
-        errors[i], worst = budget.total, worst.worse(budget)
-    checks.warn_if_inaccurate(worst, question.rtol)
-    return labelled(labels, errors, p)
+        row = row_of(question, i, names)
+        errors.add(i, slice(None), row.fill(slice(None), slice(None), {name: v[i] for name, v in values.items()}))
+    if "power_through" in names:
+        values["power_through"] = powers(question, errors)
+    for budget, scale in errors.worst_by_scale:
+        checks.warn_if_inaccurate(budget, question.rtol, scale)
+    return labelled(labels, errors.total, values)

@@ -14,6 +14,10 @@ from ..io import datasets
 from ..media.structures import Slab
 from ..sources.base import Beam
 from . import checks, hints
+from .field_variables import checked_variables
+
+#: All dimensions of a field, in its order.
+AXES = ("frequency", "angle", "z", "x")
 
 
 class Labels(NamedTuple):
@@ -25,6 +29,7 @@ class Labels(NamedTuple):
     boundary: str
     period: float | None
     rtol: float
+    variables: tuple[str, ...]
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -38,7 +43,16 @@ class Labels(NamedTuple):
 
 
 def checked_question(
-    slab: Slab, beam: Beam, frequency: Any, x: Any, z: Any, angle: Any, boundary: str, period: float | None, rtol: float
+    slab: Slab,
+    beam: Beam,
+    frequency: Any,
+    x: Any,
+    z: Any,
+    angle: Any,
+    boundary: str,
+    period: float | None,
+    rtol: float,
+    variables: Any = ("p",),
 ) -> tuple[FieldQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument."""
     beams = checks.beams(slab, beam, frequency, angle, rtol)
@@ -54,16 +68,19 @@ def checked_question(
     elif period is not None:
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
-    return question, Labels(beams.axes | {"z": zs, "x": xs}, slab, beam, boundary, period, beams.rtol)
+    axes = beams.axes | {"z": zs, "x": xs}
+    return question, Labels(axes, slab, beam, boundary, period, beams.rtol, checked_variables(variables))
 
 
-def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dataset:
-    """The dataset of p (F, A, Z, X) and errors (F, A); without p, all else."""
-    dims, pick = labels.dims, labels.pick
-    variables: dict[str, Any] = {} if p is None else {"p": (dims, p[pick])}
+def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:
+    """The dataset of variables, on the first of (frequency, angle, z, x), and of their errors, by name."""
+    pick = labels.pick
+    axes = {n: labels.dims[: len([d for d in labels.dims if d in AXES[:n]])] for n in range(2, 5)}
+    variables: dict[str, Any] = {name: (axes[v.ndim], v[pick[: v.ndim]]) for name, v in values.items()}
     if labels.boundary == "open":
-        by_beam = tuple(d for d in dims if d in ("frequency", "angle"))
-        variables["error_estimate"] = (by_beam, errors[pick[:2]])
+        for name, error in errors.items():
+            variables["error_estimate" if name == "p" else f"error_estimate_{name}"] = (axes[2], error[pick[:2]])
+    more = {} if labels.variables == ("p",) else {"variables": labels.variables}
     ds = datasets.make(
         variables,
         checks.coords(**labels.axes),
@@ -74,6 +91,7 @@ def labelled(labels: Labels, errors: np.ndarray, p: np.ndarray | None) -> xr.Dat
         boundary=labels.boundary,
         period=labels.period,
         rtol=labels.rtol,
+        **more,
     )
     ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness}
     if labels.period is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,6 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from ..contour.error import uniform_budget
-from ..fields.question import fill, prepare
 from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
@@ -20,6 +18,7 @@ from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
 from .field_question import checked_question, labelled
+from .field_variables import bytes_held, kinds, no_errors, powers, row_of
 
 #: The largest chunk of a file [bytes]: 16 MB, what a reader holds for one value of it, and what compresses at a time.
 CHUNK = 2**24
@@ -40,6 +39,8 @@ def save_field(
     rtol: float = 1e-8,
     memory: float = 2**28,
     progress: Progress = False,
+    *,
+    variables: str | Sequence[str] = ("p",),
 ) -> xr.Dataset:
     """A field map in a file, written in blocks: as `save` would write the answer of `field`, without ever holding it.
 
@@ -47,10 +48,10 @@ def save_field(
     ----------
     path : path
         Ending in .nc (netCDF) or .zarr; replaced if it exists, once the new one is complete.
-    slab, beam, frequency, x, z, angle, boundary, period, rtol
+    slab, beam, frequency, x, z, angle, boundary, period, rtol, variables
         As in `field`.
     memory : float, bytes
-        Of the largest block of p that is held at a time: one row along x at least. What a block is made from takes
+        Of the largest block of all variables that is held at a time: one row along x at least. What a block is made from takes
         some tens of MB more.
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of blocks that is worked through.
@@ -58,8 +59,8 @@ def save_field(
     Returns
     -------
     Dataset
-        All of the answer but `p`. Read the file with `load`, or by parts with ``xarray.open_dataset(path, engine="h5netcdf")``
-        or ``xarray.open_zarr(path, consolidated=False)``.
+        All of the answer but the variables on (z, x). Read the file with `load`, or by parts with ``xarray.open_dataset(path, chunks={})``,
+        where p is the pair ``p_real`` and ``p_imag``, or ``xarray.open_zarr(path)``.
 
     Warns
     -----
@@ -84,44 +85,44 @@ def save_field(
     path = validate.as_path(path)
     validate.flag_or_function(progress, "progress")
     check_target(path)
-    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
-    shape, dims, pick = question.shape, labels.dims, labels.pick
-    check_field(shape, in_file=True)
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables)
+    shape, dims, pick, names = question.shape, labels.dims, labels.pick, labels.variables
+    values, each = kinds(names), bytes_held(names)
+    check_field(shape, in_file=True, values=each)
     memory = validate.as_number(memory, "memory", positive=True)
-    block, chunk = _block(shape, memory)
+    block, chunk = _block(shape, memory, sum(each))
     work = [
         (i, slice(j, j + block[0]), slice(k, k + block[1]))
         for i, j, k in itertools.product(range(shape[0]), range(0, shape[1], block[0]), range(0, shape[2], block[1]))
     ]
-    errors = np.full(shape[:2], np.nan)
-    worst = uniform_budget(1, 0.0)
+    errors = no_errors(names, shape)
+    rest = {"power_through": powers(question, errors)} if "power_through" in names else {}
     kept = [isinstance(p, slice) for p in pick]
 
-    def blocks() -> Iterator[tuple[tuple[Any, ...], np.ndarray]]:
-        nonlocal worst
+    def blocks() -> Iterator[tuple[tuple[Any, ...], dict[str, np.ndarray]]]:
         chosen = -1
         for i, angles, planes in watched(progress, work, "blocks"):
             if i != chosen:
-                prepared, chosen = prepare(question, i), i
+                row, chosen = row_of(question, i, names), i
             # a block at the end may be smaller
             sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), shape[1:3], strict=True)]
-            p = np.empty((1, *sizes, shape[3]), complex)
-            budget = fill(prepared, planes, angles, p[0])
-            errors[i, angles], worst = np.fmax(errors[i, angles], budget.total), worst.worse(budget)
+            out: dict[str, np.ndarray] = {name: np.empty((1, *sizes, shape[3]), kind) for name, kind in values.items()}
+            errors.add(i, angles, row.fill(planes, angles, {name: v[0] for name, v in out.items()}))
             where = (slice(i, i + 1), angles, planes, slice(None))
-            yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), p[pick]
+            yield tuple(w for w, keep in zip(where, kept, strict=True) if keep), {n: v[pick] for n, v in out.items()}
 
     sizes = dict(zip(dims, (n for n, keep in zip(shape, kept, strict=True) if keep), strict=True))
     chunks = tuple(c for c, keep in zip((1, *chunk, shape[3]), kept, strict=True) if keep)
-    save_blocks(path, "p", sizes, chunks, blocks(), lambda: labelled(labels, errors, None))
-    checks.warn_if_inaccurate(worst, question.rtol)
-    return labelled(labels, errors, None)
+    save_blocks(path, values, sizes, chunks, blocks(), lambda: labelled(labels, errors.total, rest))
+    for budget, scale in errors.worst_by_scale:
+        checks.warn_if_inaccurate(budget, question.rtol, scale)
+    return labelled(labels, errors.total, rest)
 
 
-def _block(shape: tuple[int, ...], memory: float) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Angles and planes of a block, and of a chunk, of which a block is a whole number."""
+def _block(shape: tuple[int, ...], memory: float, size: int) -> tuple[tuple[int, int], tuple[int, int]]:
+    """Angles and planes of a block, of `size` bytes a point, and of a chunk, of which a block is a whole number."""
     _, angles, planes, points = shape
-    row = SIZE * points
+    row = max(size, SIZE) * points
     many = max(1, min(angles, int(memory // row)))
     held = max(1, min(planes, int(memory // (row * many))))
     chunk = max(1, min(held, int(CHUNK // (row * many))))

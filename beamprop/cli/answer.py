@@ -3,15 +3,32 @@
 from __future__ import annotations
 
 import json
+import sys
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from .. import memory
+from ..parameters import named
+from .failures import attempt
+
 if TYPE_CHECKING:
     import xarray as xr
+
+#: Bytes that a complex value takes on its way to JSON.
+JSON = 1000.0
+
+
+def progress(o: dict[str, Any]) -> bool:
+    """Whether to show bars: to a person who looks at a terminal, and has not asked for quiet."""
+    return not o["quiet"] and _on_terminal()
+
+
+def _on_terminal() -> bool:
+    return sys.stderr.isatty()
 
 
 def answer(
@@ -21,50 +38,60 @@ def answer(
     summary: Callable[[xr.Dataset], str],
     saved: bool = False,
 ) -> xr.Dataset:
-    """Ask, write (unless asking has `saved`), draw, print; the dataset. A ValueError is wrong use: exit 2."""
+    """Ask, draw, write (unless asking has `saved`), print; the dataset. A ValueError is wrong use: exit 2."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        try:
-            ds = ask()
-        except ValueError as error:
-            raise click.UsageError(str(error)) from None
-        except (OSError, ImportError) as error:
-            raise click.ClickException(str(error)) from None
+        ds = attempt(ask)
+        files = attempt(lambda: _write(o, ds, draw, saved))
+        if o["as_json"]:
+            attempt(lambda: check_text(ds.nbytes / 16))
+            printed = json.dumps(plain(ds.to_dict()), allow_nan=False)
+        else:
+            printed = "\n".join([*_where(ds), summary(ds), *(f"wrote {path}" for path in files)])
     for w in caught:
         if not issubclass(w.category, DeprecationWarning):
             click.echo(f"warning: {w.message}", err=True)
-    try:
-        if o["output"] and not saved:
-            from ..io.storage import save
-
-            save(ds, o["output"])
-        if o["plot"] and draw is not None:
-            draw_into(ds, draw, o["plot"])
-    except ValueError as error:
-        raise click.UsageError(str(error)) from None
-    except (OSError, ImportError) as error:
-        raise click.ClickException(str(error)) from None
-    if o["as_json"]:
-        click.echo(json.dumps(plain(ds.to_dict()), allow_nan=False))
-    elif not o["quiet"]:
-        click.echo(summary(ds))
-        for path in filter(None, (o["output"], o["plot"])):
-            click.echo(f"wrote {path}")
+    if o["as_json"] or not o["quiet"]:
+        click.echo(printed)
     return ds
 
 
-def draw_into(ds: xr.Dataset, draw: Callable[[xr.Dataset], Any], path: Path) -> None:
-    """Draw a dataset into a file that appears when it is complete."""
-    import matplotlib
+def check_text(values: float) -> None:
+    """Refuse JSON of more complex values than fit in memory as text."""
+    memory.check("--json", JSON * values, f"the text of {values:.3g} values", "write them to a file with --output")
 
-    matplotlib.use("agg")
-    import matplotlib.pyplot as plt
 
-    from ..io.storage import write_whole
+def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False) -> None:
+    """Refuse, before the work, a file that cannot hold the answer (of several axes, or without positions), or that is read."""
+    output = o["output"]
+    for name in ("layers", "profile"):
+        if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():
+            raise click.UsageError(f"--output: expected a file other than that of --{name}, got {str(output)!r}")
+    several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if isinstance(value, list)]
+    ending = "" if output is None else output.suffix.lower()
+    if ending == ".csv" and len(several) > 1:
+        raise click.UsageError(f"--output: expected one axis for a .csv, got {' and '.join(several)}")
+    if ending in (".vti", ".vtr") and not field:
+        raise click.UsageError(f"--output: expected a field for a {ending}, got an answer without positions")
 
-    figure = draw(ds).figure
-    write_whole(path, lambda draft: figure.savefig(draft, dpi=150))
-    plt.close(figure)
+
+def _write(o: dict[str, Any], ds: xr.Dataset, draw: Callable[[xr.Dataset], Any] | None, saved: bool) -> list[Path]:
+    """Write the picture and the dataset; their names. The picture is drawn first: where that fails, nothing is written."""
+    output, plot = o["output"], o.get("plot")
+    figure = draw(ds).figure if plot and draw is not None else None
+    if output and not saved:
+        from ..io.exports import write
+
+        with named("output", "path", "ds"):
+            write(ds, output)
+    if plot and figure is not None:
+        import matplotlib.pyplot as plt
+
+        from ..io.storage import write_whole
+
+        write_whole(plot, lambda draft: figure.savefig(draft, dpi=150))
+        plt.close(figure)
+    return [path for path in (output, plot) if path]
 
 
 def plain(value: Any) -> Any:
@@ -80,17 +107,45 @@ def plain(value: Any) -> Any:
     return value
 
 
-def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0, most: int = 12) -> str:
-    """At most `most` rows of a dataset as text, evenly spaced."""
+def _where(ds: xr.Dataset) -> list[str]:
+    """A line with the frequency and angle of the answer, where it is at one."""
+    scalars = [ds[name] for name in ("frequency", "angle") if name in ds.coords and not ds[name].dims]
+    return [", ".join(f"{v.name} {float(v):.8g} {v.attrs['units']}" for v in scalars)] if scalars else []
+
+
+# --- tables -----------------------------------------------------------------------------------------------
+
+#: Rows and columns that a table shows at most, and rows of each where there are several tables.
+ROWS, COLUMNS, ROWS_EACH = 12, 7, 6
+
+
+def _spread(size: int, most: int) -> list[int]:
+    """At most so many of the indices below `size`, evenly spread, with both ends."""
+    return list(range(size)) if size <= most else sorted({round(i * (size - 1) / (most - 1)) for i in range(most)})
+
+
+def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0) -> str:
+    """Variables of a dataset as text: along an axis a column each, on two axes a table each."""
+    ds = ds[list(names)] * scale
     dims = list(ds[names[0]].dims)
-    frame = ds[list(names)].to_dataframe().reset_index() if dims else None
-    if frame is None:
-        return "\n".join(f"{n:22s} {float(ds[n]) * scale:.6g}" for n in names)
-    rows = list(range(len(frame)))
-    if len(frame) > most:
-        rows = sorted({round(i * (len(frame) - 1) / (most - 1)) for i in range(most)})
-    keep = frame.iloc[rows][[*dims, *names]].copy()
-    for n in names:
-        keep[n] = keep[n] * scale
-    left_out = f"\n({len(frame)} rows; {len(keep)} shown)" if len(keep) < len(frame) else ""
-    return keep.to_string(index=False, float_format=lambda v: f"{v:.6g}") + left_out
+    if not dims:
+        return "\n".join(f"{n:22s} {float(ds[n]):.6g}" for n in names)
+    if len(dims) == 1:
+        return _text(ds.to_dataframe()[list(names)], ROWS, len(names))
+    return "\n\n".join(
+        f"{n}\n" + _text(ds[n].to_series().unstack(dims[-1], sort=False), ROWS_EACH, COLUMNS) for n in names
+    )
+
+
+def _text(frame: Any, rows: int, columns: int) -> str:
+    """A frame as text, of the rows and columns that fit."""
+    part = frame.iloc[_spread(len(frame), rows), _spread(frame.shape[1], columns)]
+    head = [] if part.columns.name is None else [str(part.columns.name)]
+    shown = part.rename_axis(columns=None).reset_index()
+    shown.columns = [c if isinstance(c, str) else f"{head[0]} {c:g}" for c in shown.columns]
+    left_out = ""
+    if part.shape != frame.shape:
+        left_out = f"\n({len(part)} of {len(frame)} rows shown" + (
+            f", {part.shape[1]} of {frame.shape[1]} columns)" if part.shape[1] < frame.shape[1] else ")"
+        )
+    return shown.to_string(index=False, float_format=lambda v: f"{v:.6g}") + left_out

@@ -9,29 +9,27 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .answer import answer
-from .comsol import COMSOL, on_grid, read, refuse_unused
-from .options import Target
+from .commands import command
+from .comsol import COMSOL, GROUP, on_grid, read, refuse_unused
+from .failures import attempt
+from .options import AT_LEAST_ZERO, COUNT, SOURCE, option, output, switch, target
 
 if TYPE_CHECKING:
     import xarray as xr
 
-SOURCE = click.Path(exists=True, path_type=Path)
 
-
-@click.command()
+@command(example="beamprop compare beam.nc comsol_export.txt --tolerance 1e-3")
 @click.argument("a", type=SOURCE)
 @click.argument("b", type=SOURCE)
-@click.option("--tolerance", type=click.FloatRange(min=0), help="Exit with 1 when the relative L2 error is above this.")
-@click.option("--rescale", is_flag=True, help="Bring b to a by the best complex factor first.")
+@option("--tolerance", kind=AT_LEAST_ZERO, text="Exit with 1 when the relative L2 error is above this.")
+@switch("--rescale", text="Bring b to a by the best complex factor first.")
 @COMSOL
-@click.option("--output", "-o", type=Target(".nc", ".zarr"), help="Write the comparison to this .nc or .zarr.")
-@click.option("--plot", "-p", type=Target(".png", ".pdf"), help="Draw it into this .png or .pdf.")
-@click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing but what was asked for by --json.")
+@output()
 def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any, **o: Any) -> None:
-    """Measure the field in file B against that in file A (.nc, .zarr, or COMSOL's text).
+    """Measure the field in file B against A.
 
-    Scattered nodes are compared as they are with a field of this command, which is evaluated there; --grid interpolates them.
+    Files are .nc, .zarr, .mat, or COMSOL's text. Scattered nodes are compared as they are with a field of this command, which is
+    evaluated there; --grid interpolates them.
     """
 
     def ask() -> xr.Dataset:
@@ -52,6 +50,8 @@ def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any,
 
         return np.atleast_1d(plot.comparison(ds))[0]
 
+    if o["output"] and any(source.resolve() == o["output"].resolve() for source in (a, b)):
+        raise click.UsageError(f"--output: expected a file other than those compared, got {str(o['output'])!r}")
     ds = answer(o, ask, draw, _summary)
     if tolerance is not None and not float(ds["relative_l2"].max()) <= tolerance:
         click.echo(f"relative L2 error {float(ds['relative_l2'].max()):.3e} is above {tolerance:g}", err=True)
@@ -72,37 +72,40 @@ def _summary(ds: xr.Dataset) -> str:
 
 
 def _widths(ds: xr.Dataset) -> list[str]:
-    """The line on widths, which scattered nodes have none of."""
-    if "fwhm_difference" not in ds:
+    """The line on widths, which scattered nodes have none of, nor fields that fall to half nowhere."""
+    if "fwhm_difference" not in ds or bool(ds["fwhm_difference"].isnull().all()):
         return []
     return [f"widths differ by up to {float(abs(ds['fwhm_difference']).max()) * 1000:.4g} mm"]
 
 
-@click.command()
+@command(example="beamprop convert comsol_export.txt field.nc")
 @click.argument("source", type=SOURCE)
-@click.argument("target", type=Target(".nc", ".zarr"))
-@click.option("--x", help="The file's coordinate that is lateral; its first by default.")
-@click.option("--z", help="The file's coordinate that is depth; its second by default.")
-@click.option("--expression", help="The expression that is the pressure, where several may be.")
+@click.argument("target", type=target())
+@option("--x", text="The file's coordinate that is lateral.", shown="its first", group=GROUP)
+@option("--z", text="The file's coordinate that is depth.", shown="its second", group=GROUP)
+@option("--expression", text="The expression that is the pressure, where several may be.", group=GROUP)
 @COMSOL
-@click.option("--split-complex", is_flag=True, help="Write real and imaginary parts as variables of their own.")
-@click.option("--quiet", "-q", is_flag=True, help="Print nothing.")
-def convert(source: Path, target: Path, split_complex: bool, quiet: bool, grid: Any, **options: Any) -> None:
-    """Bring COMSOL's text, or a dataset of ours, to a .nc or .zarr."""
-    from ..io.storage import save
+@switch("--split-complex", text="Write real and imaginary parts as variables of their own.", group="Output")
+@option(
+    "--digits", kind=COUNT, text="Keep so many digits of each variable's largest value, compressed.", group="Output"
+)
+@switch("--quiet", "-q", text="Print nothing but warnings.", group="Output")
+def convert(source: Path, target: Path, quiet: bool, grid: Any, **o: Any) -> None:
+    """Bring a file to another format.
+
+    From COMSOL's text, .nc, .zarr or .mat to .nc, .zarr, .mat (MATLAB), .vti, .vtr (ParaView) or .csv; a file or store of that name
+    is replaced.
+    """
+    from ..io.exports import write
 
     def ask() -> xr.Dataset:
-        refuse_unused({name: options[name] for name in ("length_unit", "angle_unit")}, source)
-        return on_grid(grid, read(source, **options))[0]
+        about = {name: o[name] for name in ("x", "z", "expression", "length_unit", "angle_unit")}
+        refuse_unused(about, source)
+        return on_grid(grid, read(source, **about))[0]
 
-    o = {"output": None, "plot": None, "as_json": False, "quiet": True}
-    ds = answer(o, ask, None, str)
-    try:
-        save(ds, target, split_complex=split_complex)
-    except ValueError as error:
-        raise click.UsageError(str(error)) from None
-    except (OSError, ImportError) as error:
-        raise click.ClickException(str(error)) from None
+    ds = answer({"output": None, "as_json": False, "quiet": True}, ask, None, str)
+    options = {name: o[name] for name in ("split_complex", "digits") if o[name]}
+    attempt(lambda: write(ds, target, **options))
     if not quiet:
         click.echo(f"wrote {target}")
 

@@ -2,40 +2,74 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from .. import parameters
 from ..parameters import spaced
-from .answer import answer, table
-from .options import BEAM, CELL, OUTPUT, OUTPUT_WITHOUT_PLOT, SLAB, Axis, given, option
+from .answer import answer, check_output, check_text, progress, table
+from .commands import command
+from .failures import typed
+from .options import BEAM, CELL, LENGTH, NAMES, POSITIVE, REAL, SLAB, axis, given, launch, option, output, switch, words
 
 if TYPE_CHECKING:
     import xarray as xr
 
+    from ..media.structures import Slab
 
-@click.command(name="beam_width")
+#: What a frequency is by default, for the help.
+ONE, BAND = "2500, the design frequency", "2000:3000:101, about the design frequency"
+
+
+def _slab(o: dict[str, Any]) -> tuple[Slab, parameters.Design]:
+    """The slab, and what defaults are taken by."""
+    table = given(o, parameters.SLAB)
+    slab = parameters.slab(table)
+    return slab, parameters.design(table, slab.before, o["frequency"])
+
+
+def _frequency(o: dict[str, Any], design: parameters.Design) -> parameters.Axis:
+    return design.frequency if o["frequency"] is None else o["frequency"]
+
+
+def _needs_axis(o: dict[str, Any], *names: str) -> None:
+    """Refuse --plot where each of these axes is one value that was typed."""
+    if o["plot"] and not any(isinstance(o[n], list) for n in names):
+        raise click.UsageError(f"--plot: expected an axis for {' or '.join(map(typed, names))}, got one value")
+
+
+@command("beam_width", example="beamprop beam_width --angle 0:60:13 --frequency 2500 --plot width.png")
 @SLAB
 @BEAM
-@option("--frequency", default="2000:3000:101", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=0.0, text=parameters.BEAM["z0"].text)
-@click.option("--air-distance", type=float, help="Of the comparison without the slab [m]; two wavelengths by default.")
-@OUTPUT
+@axis("frequency", "[Hz], an axis.", BAND)
+@launch("0")
+@option(
+    "--air-distance",
+    kind=LENGTH,
+    text="Of the comparison without the slab [m].",
+    shown="two wavelengths",
+)
+@output()
 def beam_width(**o: Any) -> None:
-    """Beam widths against frequency or angle (the paper's Fig. 6)."""
+    """Beam widths by frequency or angle.
+
+    The paper's Fig. 6.
+    """
 
     def ask() -> xr.Dataset:
         from ..api.beam_width import beam_width as question
 
+        slab, design = _slab(o)
         return question(
-            parameters.slab(given(o, parameters.SLAB)),
-            parameters.beam(given(o, parameters.BEAM)),
-            o["frequency"],
+            slab,
+            parameters.beam(given(o, parameters.BEAM), design.scale),
+            design.band if o["frequency"] is None else o["frequency"],
             o["angle"],
             o["rtol"],
             o["air_distance"],
-            progress=not o["quiet"],
+            progress=progress(o),
         )
 
     def draw(ds: xr.Dataset) -> Any:
@@ -43,86 +77,102 @@ def beam_width(**o: Any) -> None:
 
         return plot.width(ds)
 
-    _needs_axis(o, "frequency", "angle")
+    if o["frequency"] is not None:
+        _needs_axis(o, "frequency", "angle")
+    check_output(o, {"frequency": o["frequency"] or [], "angle": o["angle"]})
     names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
     answer(o, ask, draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
 
 
-def _needs_axis(o: dict[str, Any], *names: str) -> None:
-    if o["plot"] and not any(isinstance(o[n], list) for n in names):
-        raise click.UsageError(f"--plot: expected an axis for {' or '.join('--' + n for n in names)}, got one value")
-
-
-@click.command(name="beam_measures")
+@command("beam_measures", example="beamprop beam_measures --angle 30 --lossless --periods 20 --window 1")
 @SLAB
 @BEAM
-@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=0.0, text=parameters.BEAM["z0"].text)
-@click.option("--window", type=float, help="Half-width of the window [m]; as wide as the beam by default.")
-@OUTPUT_WITHOUT_PLOT
+@axis("frequency", "[Hz], an axis.", ONE)
+@launch("0")
+@option("--window", kind=LENGTH, text="Half-width of the window [m].", shown="as wide as the beam")
+@output(plot=False)
 def beam_measures(**o: Any) -> None:
-    """Reflected and transmitted beam: widths by three definitions, place, shift, power, divergence."""
+    """The reflected and transmitted beam, measured.
+
+    Widths by three definitions, place, lateral shift, power and divergence.
+    """
 
     def ask() -> xr.Dataset:
         from ..api.beam_measures import beam_measures as question
 
-        beam = parameters.beam(given(o, parameters.BEAM))
+        slab, design = _slab(o)
         return question(
-            parameters.slab(given(o, parameters.SLAB)),
-            beam,
-            o["frequency"],
+            slab,
+            parameters.beam(given(o, parameters.BEAM), design.scale),
+            _frequency(o, design),
             o["angle"],
             o["rtol"],
             window=o["window"],
-            progress=not o["quiet"],
+            progress=progress(o),
         )
 
+    check_output(o, {"frequency": o["frequency"], "angle": o["angle"], "side": []})
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
-    answer(o | {"plot": None}, ask, None, lambda ds: table(ds, names))
+    answer(o, ask, None, lambda ds: table(ds, names))
 
 
-@click.command()
+@command(example="beamprop field --layer 'density=1000 speed=1480 2mm' --frequency 1MHz --plot beam.png")
 @SLAB
 @BEAM
-@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--z0", default=-0.1, text=parameters.BEAM["z0"].text)
-@option("--x", default="-0.7:0.7:561", kind=Axis(), text="Lateral positions [m], an axis.")
-@click.option(
-    "--z", type=Axis(), help="Depths [m], an axis; from the launch plane to a little behind the slab by default."
+@axis("frequency", "[Hz], an axis.", ONE)
+@launch("-0.1, 0.73 wavelengths")
+@axis("x", "Lateral positions [m], an axis.", "-0.7:0.7:561, 5.1 wavelengths to both sides")
+@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab")
+@option(
+    "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )
-@option("--boundary", default="open", kind=click.Choice(["open", "periodic"]), text="One beam, or a periodic array.")
-@click.option("--period", type=float, help="Of the periodic array [m].")
-@option("--quantity", default="abs", kind=click.Choice(["abs", "real"]), text="What --plot draws.")
-@click.option(
+@option("--period", kind=LENGTH, text="Of the periodic array [m].")
+@option("--quantity", kind=words("abs", "real"), text="What --plot draws.", default="abs", shown="abs")
+@option(
+    "--variables",
+    kind=NAMES,
+    text="Of the dataset, with commas between: p, v_x, v_z, intensity, power_through.",
+    shown="p",
+)
+@option(
     "--memory",
-    type=click.FloatRange(min=0, min_open=True),
-    help="Write --output block by block, each of at most this many MiB: for maps larger than memory.",
+    kind=POSITIVE,
+    text="Write --output block by block, each of at most this many MiB: for maps larger than memory.",
 )
-@OUTPUT
+@output()
 def field(**o: Any) -> None:
-    """The pressure field of a beam in front of, inside and behind the slab (the paper's Fig. 5)."""
+    """The field of a beam: pressure, velocity, intensity.
+
+    In front of, inside and behind the slab: the paper's Fig. 5.
+    """
+    variables = o["variables"] or ["p"]
 
     def ask() -> xr.Dataset:
         from ..api.field import field
 
-        slab = parameters.slab(given(o, parameters.SLAB))
-        z = o["z"] if o["z"] is not None else spaced(o["z0"], 1.25 * slab.thickness, 561)
+        slab, design = _slab(o)
+        z0 = design.launch if o["z0"] is None else o["z0"]
         question = (
             slab,
-            parameters.beam(given(o, parameters.BEAM)),
-            o["frequency"],
-            o["x"],
-            z,
+            parameters.beam(given(o, parameters.BEAM) | {"z0": z0}, design.scale),
+            _frequency(o, design),
+            design.x if o["x"] is None else o["x"],
+            design.z(z0, slab.thickness) if o["z"] is None else o["z"],
             o["angle"],
             o["boundary"],
             o["period"],
             o["rtol"],
         )
+        if o["as_json"]:
+            check_text(math.prod(len(a) for a in (*question[2:6],) if isinstance(a, list)) * len(variables))
         if o["memory"] is None:
-            return field(*question, progress=not o["quiet"])
+            return field(*question, progress=progress(o), variables=variables)
         from ..api.save_field import save_field
 
-        return save_field(o["output"], *question, memory=o["memory"] * 2**20, progress=not o["quiet"])
+        with parameters.named("output", "path"):
+            return save_field(
+                o["output"], *question, memory=o["memory"] * 2**20, progress=progress(o), variables=variables
+            )
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -131,71 +181,95 @@ def field(**o: Any) -> None:
 
     if o["plot"] and (isinstance(o["frequency"], list) or isinstance(o["angle"], list)):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
-    if o["plot"] and not (isinstance(o["x"], list) and isinstance(o["z"] or [], list)):
+    if o["plot"] and any(isinstance(o[n], float) for n in "xz"):
         raise click.UsageError("--plot: expected axes for --x and --z, got one value")
+    if o["plot"] and "p" not in variables:
+        raise click.UsageError(f"--plot: expected p among --variables, got {','.join(variables)}")
     if o["memory"] is not None and (o["plot"] or o["as_json"] or not o["output"]):
         raise click.UsageError("--memory: expected --output alone, for a map that is written and never held")
-    answer(o, ask, draw, _field_summary, saved=o["memory"] is not None)
+    check_output(
+        o,
+        {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None else o[n] for n in "xz"},
+        field=True,
+    )
+    answer(o, ask, draw, lambda ds: _field_summary(ds, variables), saved=o["memory"] is not None)
 
 
-def _field_summary(ds: xr.Dataset) -> str:
-    sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
-    largest = f"; largest |p| {float(abs(ds['p']).max()):.6g} Pa" if "p" in ds else ""
-    lines = [f"p on ({sizes}){largest}"]
+def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
+    lines = [f"{', '.join(variables)} on ({', '.join(f'{d} {n}' for d, n in ds.sizes.items())})"]
+    for name, v in ds.data_vars.items():
+        if not str(name).startswith("error_estimate"):
+            lines.append(f"largest |{name}| {float(abs(v).max()):.6g} {v.attrs['units']}")
     if "error_estimate" in ds:
         lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
     return "\n".join(lines)
 
 
-@click.command()
+#: What a plane wave may be given by.
+LATERAL = ("kx_over_k0", "kx", "angle")
+
+
+@command(example="beamprop scattering --frequency 500:5000:451 --angle 0 --plot spectrum.png")
 @SLAB
-@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@click.option("--kx-over-k0", type=Axis(), help="An axis; 0:5:1001 by default.")
-@click.option("--kx", type=Axis(), help="[rad/m], an axis.")
-@click.option("--angle", type=Axis(), help="[degree], an axis.")
+@axis("frequency", "[Hz], an axis.", ONE)
+@axis("kx_over_k0", "An axis.", "0:5:1001")
+@axis("kx", "[rad/m], an axis.")
+@axis("angle", "[degree], an axis.")
 @option(
     "--quantity",
     default="transmissivity",
-    kind=click.Choice(["transmissivity", "reflectivity", "energy_transmission", "absorption"]),
+    kind=words("transmissivity", "reflectivity", "energy_transmission", "absorption"),
     text="What --plot draws.",
+    shown="transmissivity",
 )
-@click.option("--log", is_flag=True, help="Draw on a logarithmic scale.")
-@OUTPUT
+@switch("--log", text="Draw on a logarithmic scale.")
+@output()
 def scattering(**o: Any) -> None:
-    """Plane-wave reflection and transmission against kx or angle (the paper's Figs. 2 and 3)."""
-    axes = {n: o[n] for n in ("kx_over_k0", "kx", "angle") if o[n] is not None} or {
-        "kx_over_k0": spaced(0.0, 5.0, 1001)
-    }
+    """Reflection and transmission of plane waves.
+
+    By kx, angle or frequency: the paper's Figs. 2 and 3.
+    """
+    axes = {n: o[n] for n in LATERAL if o[n] is not None} or {"kx_over_k0": spaced(0.0, 5.0, 1001)}
 
     def ask() -> xr.Dataset:
         from ..api.scattering import scattering as question
 
-        return question(parameters.slab(given(o, parameters.SLAB)), o["frequency"], **axes)
+        slab, design = _slab(o)
+        return question(slab, _frequency(o, design), **axes)
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
 
         return plot.scattering(ds, o["quantity"], log=o["log"])
 
-    if o["plot"] and not any(isinstance(v, list) for v in axes.values()):
-        raise click.UsageError("--plot: expected an axis for kx, kx-over-k0 or angle, got one value")
+    if len(axes) > 1:
+        raise click.UsageError(f"{', '.join(map(typed, axes))}: expected exactly one of them, got {len(axes)}")
+    _needs_axis(o | axes, "frequency", *axes)
+    check_output(o, {"frequency": o["frequency"]} | axes)
     names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
     answer(o, ask, draw, lambda ds: table(ds, names))
 
 
-@click.command()
+@command(example="beamprop bloch --eta 1/20 --plot contour.png")
 @CELL
-@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--kx-over-k0", default="-10:10:801", kind=Axis(), text="An axis.")
-@OUTPUT
+@axis("frequency", "[Hz], an axis.", ONE)
+@axis("kx_over_k0", "An axis.", "-10:10:801")
+@output()
 def bloch(**o: Any) -> None:
-    """Bloch wavenumber of the infinite medium against kx: equifrequency contours (the paper's Fig. 4)."""
+    """Bloch wavenumber: equifrequency contours.
+
+    Of the infinite medium against kx: the paper's Fig. 4.
+    """
+    kx_over_k0 = spaced(-10.0, 10.0, 801) if o["kx_over_k0"] is None else o["kx_over_k0"]
 
     def ask() -> xr.Dataset:
         from ..api.bloch import bloch
 
-        cell, background = parameters.cell(given(o, parameters.CELL))
-        return bloch(cell, o["frequency"], kx_over_k0=o["kx_over_k0"], background=background)
+        table_of_cell = given(o, parameters.CELL)
+        cell, background = parameters.cell(table_of_cell)
+        design = parameters.design(table_of_cell, background, o["frequency"])
+        with parameters.named("layer", *(("cell",) if design.layered else ())):
+            return bloch(cell, _frequency(o, design), kx_over_k0=kx_over_k0, background=background)
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -206,25 +280,29 @@ def bloch(**o: Any) -> None:
         kz = ds["kz_over_k0"]
         return table(ds.assign({"Re kz/k0": kz.real, "Im kz/k0": kz.imag}), ("Re kz/k0", "Im kz/k0"))
 
-    _needs_axis(o, "kx_over_k0")
+    if o["plot"] and not isinstance(kx_over_k0, list):
+        raise click.UsageError("--plot: expected an axis for --kx-over-k0, got one value")
+    check_output(o, {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
     answer(o, ask, draw, summary)
 
 
-@click.command(name="guided_modes")
+@command("guided_modes", example="beamprop guided_modes --lossless --periods 20")
 @SLAB
-@option("--frequency", default="2500", kind=Axis(), text="[Hz], an axis.")
-@option("--kx-over-k0-max", default=10.0, text="Search up to this Re kx over k0.")
-@option("--strip-over-k0", default=0.5, text="Search up to this |Im kx| over k0.")
-@OUTPUT_WITHOUT_PLOT
+@axis("frequency", "[Hz], an axis.", ONE)
+@option("--kx-over-k0-max", kind=REAL, text="Search up to this Re kx over k0.", default="10", shown="10")
+@option("--strip-over-k0", kind=REAL, text="Search up to this |Im kx| over k0.", default="0.5", shown="0.5")
+@output(plot=False)
 def guided_modes(**o: Any) -> None:
-    """The modes that the slab guides, with the direction of their energy."""
+    """The modes that the slab guides.
+
+    Each with the direction of its energy.
+    """
 
     def ask() -> xr.Dataset:
         from ..api.guided_modes import guided_modes as question
 
-        return question(
-            parameters.slab(given(o, parameters.SLAB)), o["frequency"], o["kx_over_k0_max"], o["strip_over_k0"]
-        )
+        slab, design = _slab(o)
+        return question(slab, _frequency(o, design), o["kx_over_k0_max"], o["strip_over_k0"])
 
     def summary(ds: xr.Dataset) -> str:
         if ds.sizes["mode"] == 0:
@@ -232,7 +310,8 @@ def guided_modes(**o: Any) -> None:
         k = ds["kx_over_k0"]
         return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
 
-    answer(o | {"plot": None}, ask, None, summary)
+    check_output(o, {"frequency": o["frequency"], "mode": []})
+    answer(o, ask, None, summary)
 
 
 COMMANDS = (field, beam_width, beam_measures, scattering, bloch, guided_modes)

@@ -93,8 +93,12 @@ def darkest_planes(sources: AngleInterpolation, k0: float, transfer: TransferFun
 
 def _darkness(size: np.ndarray, z: np.ndarray, window: float) -> np.ndarray:
     """Sizes on sorted planes over the lesser of the largest within a window in front and behind: small at a node only."""
-    bins = np.floor((z - z[0]) / (window / 2)).astype(int)
-    bins = np.unique(bins, return_inverse=True)[1] if bins[-1] > 4 * z.size else bins
+    half_windows = np.floor(
+        (z - z[0]) / (window / 2)
+    )  # as floats: more than an integer holds, where z spans kilometres at MHz
+    bins = (
+        np.unique(half_windows, return_inverse=True)[1] if half_windows[-1] > 4 * z.size else half_windows.astype(int)
+    )
     largest = np.zeros(bins[-1] + 5)
     np.maximum.at(largest, bins + 2, size)
     padded = np.concatenate([size[:1], size, size[-1:]])

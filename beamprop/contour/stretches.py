@@ -26,7 +26,7 @@ from ..modes.guided import BESIDE, Mode, dispersion_of
 from ..modes.misplaced import MisplacedPoles
 from ..response.sampled_slab import SampledSlab, on_the_right
 from . import residues
-from .paths import SLOPE, Contour, Extent
+from .paths import EPS, SLOPE, Contour, Extent
 from .search import Search
 
 
@@ -67,7 +67,7 @@ def plan_stretches(extent: Extent, outside: float, rtol: float, noise: float) ->
     exp(depth X) magnifies rounding, as does exp(height outside) above the axis, where waves in the half-spaces grow. The exponents are
     at most 6 and 2, so that the factors together stay below e^8 (`paths.DEEPEST`); the slope of 0.6 is that of a bent contour.
     """
-    growth = min(max(1.5, math.log(rtol / (30 * noise))), 6.0)
+    growth = min(max(1.5, math.log(rtol / (30 * max(noise, 2 * EPS)))), 6.0)
     depth = min(SLOPE * extent.k0, growth / extent.across)
     return Plan(depth, min(depth, growth / 3 / max(outside, 1e-3 / extent.k0)), 0.6, extent.band)
 

@@ -37,7 +37,7 @@ def skfem() -> Any:
     try:
         import skfem
     except ImportError as error:
-        raise ImportError('beamprop.fem needs scikit-fem: pip install "beamprop[fem]"') from error
+        raise ImportError('beamprop.fem needs scikit-fem: pip install -e ".[fem]" in the checkout') from error
     return skfem
 
 

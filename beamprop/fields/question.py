@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -13,8 +13,10 @@ from ..contour.quadrature import Quadrature
 from ..media.structures import Slab
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab, sample
+from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.base import Beam
+from ..sources.lateral import LateralGradient
 from . import evaluate
 
 
@@ -43,30 +45,35 @@ class Prepared(NamedTuple):
     question: FieldQuestion
     slab: SampledSlab
     beams: AngleInterpolation
+    transfer: TransferFunction
     quadrature: Quadrature
 
 
-def prepare(question: FieldQuestion, i: int) -> Prepared:
-    """Choose the contour of integration for frequency i."""
+def prepare(question: FieldQuestion, i: int, quantity: str = "p") -> Prepared:
+    """Choose the contour of integration for frequency i, of "p", "v_x" or "v_z": each has its own.
+
+    v_x is odd in kx where contours need what is even: its factor kx goes to the source.
+    """
     s = sample(question.slab, float(question.frequency[i]), backward=True)
-    beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
+    source: Any = LateralGradient(question.source) if quantity == "v_x" else question.source
+    beams = interpolate_angles(source, question.angle, s.k0, question.rtol * 1e-4)
+    transfer = transfer_function.through(s, question.source.z0, quantity)
     if question.period is not None:
-        return Prepared(question, s, beams, choose.periodic_quadrature(s, beams, question.x, question.period))
-    transfer = transfer_function.through(s, question.source.z0)
-    quadrature = choose.choose_contour(s, beams, transfer, question.x, question.z, question.rtol)
-    return Prepared(question, s, beams, quadrature)
+        quadrature = choose.periodic_quadrature(s, beams, question.x, question.period)
+    else:
+        quadrature = choose.choose_contour(s, beams, transfer, question.x, question.z, question.rtol)
+    return Prepared(question, s, beams, transfer, quadrature)
 
 
 def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
-    """p at planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
+    """p or a velocity at planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
 
     Returns
     -------
     Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
     """
-    question, s, beams, quadrature = prepared
-    transfer, taken = transfer_function.through(s, question.source.z0), beams.taken(angles)
-    waves = evaluate.Superposition(s.k0, taken, quadrature, question.x)
+    question, s, beams, transfer, quadrature = prepared
+    waves = evaluate.Superposition(s.k0, beams.taken(angles), quadrature, question.x)
     low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
     if question.period is not None:
         return uniform_budget(low_rank.size, np.nan)

@@ -112,6 +112,7 @@ def make(
     coords: dict[str, tuple[tuple[str, ...], Any]],
     question: str,
     frequency: np.ndarray,
+    /,
     **settings: Any,
 ) -> xr.Dataset:
     """A dataset whose names all stand in `labels.LABELS`, with its provenance.

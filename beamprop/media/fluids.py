@@ -12,7 +12,7 @@ from ..conventions import branch_wavenumber, real_or_complex
 from ..validate import as_complex
 from .attenuation import Attenuation, LossyModulus
 from .hints import warn_of_modulus
-from .properties import Property, check_property, property_values
+from .properties import PROPERTY, Property, check_property, property_values
 
 
 class FluidValues(NamedTuple):
@@ -63,7 +63,7 @@ class Fluid:
         for name in ("density", "bulk_modulus", "density_x"):
             value = getattr(self, name)
             if not callable(value) and not (name == "density_x" and value is None):
-                object.__setattr__(self, name, as_complex(value, name))
+                object.__setattr__(self, name, as_complex(value, name, PROPERTY))
         numbers = {
             n: v
             for n in ("density", "bulk_modulus", "density_x")
@@ -81,7 +81,9 @@ class Fluid:
         if density_x is not None:
             check_property(density_x, "density_x", gain_sign=1, active=active, infinite=True)
             if np.any(np.asarray(density_x) == 0):
-                raise ValueError("density_x: zero beside a density that is given apart has no finite limit, got 0")
+                raise ValueError(
+                    "density_x: expected a value other than zero, which has no finite limit beside a density, got 0"
+                )
 
     @classmethod
     def from_speed(

@@ -62,7 +62,7 @@ def lmmd_cell(
     delta_rho = as_number(delta_rho, "delta_rho")
     rho_m = as_complex(rho_m, "rho_m")
     if not np.isfinite(rho_m):
-        raise ValueError(f"rho_m: expected a finite number, got {rho_m}")
+        raise validate.refuse("rho_m", "a finite number", rho_m)
     validate.within(rho_m, "rho_m", zero=True)
     if validate.flag(lossless, "lossless"):
         rho_m, delta_rho = complex(rho_m.real), 0.0
@@ -77,7 +77,7 @@ def lmmd_cell(
     if np.any(density.imag < 0):
         raise ValueError(
             "rho_m, delta_rho: expected a passive medium, Im(density) >= 0 in every layer and so Im(rho_m) >= |delta_rho|, "
-            f"got {rho_m:.6g} and {delta_rho:.6g}; lossless=True drops both losses"
+            f"got {rho_m if rho_m.imag else rho_m.real:.6g} and {delta_rho:.6g}; lossless=True drops both losses"
         )
     validate.within(density[density != 0], "rho_m, delta_rho, eta")
     thickness = eta * 2 * np.pi / k0 / n_layers

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import validate
 from ..conventions import real_or_complex
-from .properties import Property, check_property, property_values
+from .properties import PROPERTY, Property, check_property, property_values
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class Membrane:
     def __post_init__(self) -> None:
         object.__setattr__(self, "active", validate.flag(self.active, "active"))
         if not callable(self.areal_density):
-            value = validate.as_complex(self.areal_density, "areal_density")
+            value = validate.as_complex(self.areal_density, "areal_density", PROPERTY)
             object.__setattr__(self, "areal_density", value)
             check_property(value, "areal_density", gain_sign=1, active=self.active)
 

@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 from .. import validate
 from ..conventions import real_or_complex
 
+#: What a property is expected to be, in messages.
+PROPERTY = "a number or a function of frequency"
 Property = complex | Callable[[np.ndarray], np.ndarray]
 
 
@@ -22,7 +24,7 @@ def check_property(
     values = np.atleast_1d(np.asarray(values, dtype=complex))
     allowed = np.isfinite(values) | (np.isinf(values) if infinite else False)
     if not np.all(allowed):
-        raise ValueError(f"{name}: expected finite values, got {values[~allowed][0]}")
+        raise validate.refuse(name, "finite values", values[~allowed][0].item())
     if not zero and np.any(values == 0):
         raise ValueError(f"{name}: expected a value other than zero, got 0")
     validate.within(values[values != 0], name)

@@ -133,7 +133,7 @@ class Slab:
         for name, fluid in (("before", before), ("after", after)):
             validate.instance(fluid, Fluid, name)
             if not callable(fluid.density) and fluid.density == 0:
-                raise ValueError(f"{name}: a half-space cannot have density 0")
+                raise ValueError(f"{name}: expected a half-space of a density other than zero, got {fluid!r}")
         merged: list[tuple[Cell, int]] = []
         for cell, periods in segments:  # a + a becomes a with twice the periods
             if merged and merged[-1][0] == cell:

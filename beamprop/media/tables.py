@@ -123,7 +123,10 @@ def _fluid(row: Row) -> Fluid:
     given = set(row)
     if "material" in given:
         _only(given, "material", "thickness", "attenuation", "reference_frequency", "exponent")
-        return material(row["material"][1], attenuation=_attenuation(row))
+        try:
+            return material(row["material"][1], attenuation=_attenuation(row))
+        except ValueError as error:
+            raise ValueError(str(error).replace("name: ", "material: ", 1)) from None
     if "density" not in given or ("sound_speed" in given) == ("bulk_modulus" in given):
         came = ", ".join(name for name in row if name != "thickness") or "none of them"
         raise ValueError(f"density: expected material, or density and one of sound_speed and bulk_modulus, got {came}")

@@ -32,7 +32,7 @@ def _need(ds: xr.Dataset, *names: str) -> None:
     validate.instance(ds, xr.Dataset, "ds")
     missing = [n for n in names if n not in ds.variables]
     if missing:
-        raise ValueError(f"ds: expected a dataset with {', '.join(names)}; {', '.join(missing)} is missing")
+        raise ValueError(f"ds: expected a dataset with {', '.join(names)}, got one without {', '.join(missing)}")
 
 
 def _title_of(v: Any) -> str:
@@ -113,7 +113,7 @@ def _lateral(ds: xr.Dataset) -> str:
     for name in ("kx_over_k0", "angle", "kx"):
         if name in ds.dims:
             return name
-    raise ValueError("ds: expected a dimension kx, kx_over_k0 or angle")
+    raise ValueError(f"ds: expected a dimension kx, kx_over_k0 or angle, got {', '.join(map(str, ds.dims)) or 'none'}")
 
 
 def _lines(ds: xr.Dataset, y: xr.DataArray, along: str, ax: Any, label: str | None) -> None:
@@ -133,7 +133,7 @@ def _lines(ds: xr.Dataset, y: xr.DataArray, along: str, ax: Any, label: str | No
 def scattering(
     ds: xr.Dataset, quantity: str = "transmissivity", log: bool = False, ax: Any = None, label: str | None = None
 ) -> Any:
-    """Curves of a plane-wave quantity against kx, kx/k0 or angle, on a linear or logarithmic scale.
+    """Curves of a plane-wave quantity against kx, kx/k0, angle or frequency, on a linear or logarithmic scale.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def scattering(
     validate.word(quantity, "quantity", "transmissivity", "reflectivity", "energy_transmission", "absorption")
     _need(ds, quantity)
     validate.flag(log, "log")
-    along = _lateral(ds)
+    along = "frequency" if ds[quantity].dims == ("frequency",) else _lateral(ds)
     ax = _axes(ax, (5.2, 3.6))
     y = ds[quantity]
     if log:

@@ -126,6 +126,15 @@ def at_frequencies(layers: LayerValues, rows: slice | np.ndarray) -> LayerValues
     return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
 
 
+def lossy(layers: LayerValues, loss: float) -> LayerValues:
+    """Layers with more loss: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
+    return layers._replace(
+        mass=layers.mass + 1j * loss * np.abs(layers.mass),
+        compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
+        mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
+    )
+
+
 def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:
     """Each layer's mass, compliance and mobility moved by `shift` (relative) in any direction of the complex plane.
 

@@ -17,7 +17,7 @@ from ..media.values import SegmentValues, slab_values
 from . import walls
 from .cell import cell_matrix
 from .conditioning import SHIFT
-from .layer import at_frequencies, perturbed
+from .layer import at_frequencies, lossy, perturbed
 from .periods import bloch_phase
 from .slab import Response, dispersion, solve
 
@@ -77,8 +77,8 @@ class SampledSlab(Protocol):
     def periodic(self) -> bool:
         """Whether it is several periods of one cell, so that Bloch waves tell what it lets through."""
 
-    def response(self, kx: np.ndarray, z: np.ndarray | None = None) -> Response:
-        """r and t at the faces, and p at depths z (Z,) inside over the incident p at the near face."""
+    def response(self, kx: np.ndarray, z: np.ndarray | None = None, quantity: str = "p") -> Response:
+        """r and t at the faces, and p, v_x/kx or v_z at depths z (Z,) inside over the incident p at the near face."""
 
     def dispersion(self, kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """A function whose zeros in kx are the guided modes, as value and logarithm: value exp(logarithm)."""
@@ -100,6 +100,9 @@ class SampledSlab(Protocol):
 
     def admittance_after(self, kx: np.ndarray) -> np.ndarray:
         """kz/rho_z of the medium behind."""
+
+    def velocity(self, kx: np.ndarray, quantity: str, behind: bool) -> np.ndarray:
+        """ "v_x", over kx, or "v_z" of the wave along +z in front, or `behind`, per unit of its p."""
 
     def largest_kx(self, behind: bool) -> float:
         """The largest kx of waves that propagate in front, or `behind`, 0 if there are none; of one frequency [rad/m]."""
@@ -191,9 +194,9 @@ class FluidSlab(NamedTuple):
         """Whether it is several periods of one cell."""
         return len(self.segments) == 1 and self.segments[0].periods > 1 and not self.has_wall
 
-    def response(self, kx: np.ndarray, z: np.ndarray | None = None) -> Response:
+    def response(self, kx: np.ndarray, z: np.ndarray | None = None, quantity: str = "p") -> Response:
         """See `response.slab.solve`."""
-        return solve(self.segments, self.before, self.after, self.omega, kx, z)
+        return solve(self.segments, self.before, self.after, self.omega, kx, z, quantity)
 
     def dispersion(self, kx: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `response.slab.dispersion`."""
@@ -203,11 +206,7 @@ class FluidSlab(NamedTuple):
         """Half the trace of one period's matrix."""
         layers = self.segments[0].layers
         mass, compliance, mobility = (v.real for v in (layers.mass, layers.compliance, layers.mobility))
-        layers = layers._replace(
-            mass=mass + 1j * loss * np.abs(mass),
-            compliance=compliance + 1j * loss * np.abs(compliance),
-            mobility=mobility - 1j * loss * np.abs(mobility),
-        )
+        layers = lossy(layers._replace(mass=mass, compliance=compliance, mobility=mobility), loss)
         m = cell_matrix(layers, self.omega, np.atleast_2d(kx) + 0j)
         trace = m.a + (m.e11 + m.e22) / 2
         with np.errstate(over="ignore"):
@@ -233,6 +232,13 @@ class FluidSlab(NamedTuple):
     def admittance_after(self, kx: np.ndarray) -> np.ndarray:
         """kz/rho_z behind."""
         return self.kz_after(kx) / self.after.rho_z[:, None]
+
+    def velocity(self, kx: np.ndarray, quantity: str, behind: bool) -> np.ndarray:
+        """1/(w rho_x), or kz/(w rho_z)."""
+        if quantity == "v_z":
+            return (self.admittance_after(kx) if behind else self.admittance_before(kx)) / self.omega
+        rho_x = (self.after if behind else self.before).rho_x[:, None]
+        return np.divide(1, rho_x, out=np.zeros(rho_x.shape, complex), where=np.isfinite(rho_x)) / self.omega + 0 * kx
 
     def largest_kx(self, behind: bool) -> float:
         """w sqrt(rho_x/K), if it is finite."""
@@ -267,15 +273,7 @@ class FluidSlab(NamedTuple):
         """Every density and modulus with `loss` more."""
         if not loss:
             return self
-        segments = []
-        for values in self.segments:
-            layers = values.layers
-            lossy = layers._replace(
-                mass=layers.mass + 1j * loss * np.abs(layers.mass),
-                compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
-                mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
-            )
-            segments.append(values._replace(layers=lossy))
+        segments = [values._replace(layers=lossy(values.layers, loss)) for values in self.segments]
         before, after = (
             FluidValues(
                 f.rho_z + 1j * loss * np.abs(f.rho_z),

@@ -10,12 +10,13 @@ from ..conventions import outgoing_kz
 from ..media.fluids import FluidValues
 from ..media.values import SegmentValues
 from .interior import fill_interior
+from .interior_velocity import fill_velocity
 from .layer import State
 from .recursion import Station, carry_back
 
 
 class Response(NamedTuple):
-    """r and t at the faces, and p(z) / (incident p at the near face) at the requested depths, (F, Z, n)."""
+    """r and t at the faces, and p(z) / (incident p at the near face) at the requested depths, (F, Z, n), or v/p."""
 
     r: np.ndarray
     t: np.ndarray
@@ -65,6 +66,7 @@ def solve(
     omega: np.ndarray,
     kx: np.ndarray,
     z: np.ndarray | None = None,
+    quantity: str = "p",
 ) -> Response:
     """Response of a slab to a plane wave of unit pressure at the near face.
 
@@ -75,6 +77,7 @@ def solve(
     omega : (F, 1), rad/s
     kx : (F, n) complex, rad/m
     z : (Z,) depths inside the slab [m], or None
+    quantity : what is told inside, "p", "v_z", or "v_x", which stands for v_x/kx
 
     Returns
     -------
@@ -95,9 +98,11 @@ def solve(
         t = per_incident * np.exp(-near.log)
         r = waves.reflected / waves.incident
         inside = np.empty((kx.shape[0], 0, kx.shape[1]), complex)
-        if z.size:
+        if z.size and quantity == "p":
             inside = fill_interior(stations, omega, kx, z, near.log, per_incident)
-        wall = _wall(segments)
+        elif z.size:
+            inside = fill_velocity(stations, omega, kx, z, near.log, per_incident, quantity[-1])
+        wall = _wall(segments, far=quantity != "p")
         if np.any(np.isfinite(wall)):
             blocked = np.isfinite(wall) & (kx != 0)
             t = np.where(blocked, 0.0, t)
@@ -110,15 +115,17 @@ def _alike(front: FluidValues, behind: FluidValues) -> bool:
     return all(bool((a == b).all()) for a, b in zip(front, behind, strict=True))
 
 
-def _wall(segments: list[SegmentValues]) -> np.ndarray:
+def _wall(segments: list[SegmentValues], far: bool = False) -> np.ndarray:
     """(F, 1): depth of the first layer whose isotropic density is exactly zero: p = 0 from there on unless kx = 0; or inf.
 
-    In it dp/dz = rho q = 0, while dq/dz = (kx^2/rho - w^2/K) p is finite for p = 0 alone.
+    In it dp/dz = rho q = 0, while dq/dz = (kx^2/rho - w^2/K) p is finite for p = 0 alone: the velocity ends at its `far` face,
+    for p/rho is finite in a fluid without mass, which flows as a potential does.
     """
     wall, start = np.array(np.inf), 0.0
     for layers, periods in segments:
-        near = start + np.concatenate([[0.0], np.cumsum(layers.thickness)[:-1]])
-        wall = np.minimum(wall, np.min(np.where(layers.vanishing, near[:, None], np.inf), axis=0))
+        faces = start + np.concatenate([[0.0], np.cumsum(layers.thickness)])
+        face = faces[1:] if far else faces[:-1]
+        wall = np.minimum(wall, np.min(np.where(layers.vanishing, face[:, None], np.inf), axis=0))
         start += periods * float(layers.thickness.sum())
     return wall[:, None]
 

@@ -1,4 +1,4 @@
-"""The transfer function H(kx, z): total pressure at z per unit of the source's spectrum on the launch plane.
+"""The transfer function H(kx, z): total pressure, or particle velocity, at z per unit of the source's spectrum on the launch plane.
 
 Free propagation in a half-space and the launch from a plane z0 in front of the slab stand here and nowhere else.
 """
@@ -14,12 +14,16 @@ import numpy as np
 
 from .sampled_slab import SampledSlab
 
+#: How far behind a depth v_x is taken, over the depth: a depth on an interface is known to a few units of the last place.
+AT_INTERFACE = 8 * float(np.finfo(float).eps)
+
 
 @dataclass(frozen=True)
 class TransferFunction:
     """H(kx, z) of a slab at one frequency, for kx (n,) and depths z (Z,): (Z, n).
 
-    `pressure(slab, kx, z)` gives the values; `through`, `free`, `reflected` and `transmitted` make the usual ones.
+    `pressure(slab, kx, z)` gives the values; `through`, `free`, `reflected` and `transmitted` make the usual ones. All are even in
+    kx: v_x is kx times its own, and belongs to a source whose spectrum is kx S(kx) (`sources.lateral.LateralGradient`).
     """
 
     slab: SampledSlab
@@ -30,9 +34,11 @@ class TransferFunction:
         return self.pressure(self.slab.perturbed(shift), kx * (1 + shift), z)
 
 
-def through(s: SampledSlab, z0: float) -> TransferFunction:
-    """Total pressure in front of, inside and behind a slab, of a source on the launch plane z0."""
-    return TransferFunction(s, partial(total_pressure, z0=z0))
+def through(s: SampledSlab, z0: float, quantity: str = "p") -> TransferFunction:
+    """Total pressure in front of, inside and behind a slab, of a source on the launch plane z0; or "v_z", or "v_x" over kx."""
+    if quantity == "p":
+        return TransferFunction(s, partial(total_pressure, z0=z0))
+    return TransferFunction(s, partial(_total_velocity, z0=z0, quantity=quantity))
 
 
 def free(s: SampledSlab) -> TransferFunction:
@@ -92,6 +98,34 @@ def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> 
         if behind.any():
             distance = (z[behind] - s.thickness)[:, None]
             out[behind] = response.t[0] * launch * propagation(s.kz_after(kx)[0], distance)
+    return out
+
+
+def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, quantity: str) -> np.ndarray:
+    """v_z, or v_x over kx, at depths z (Z,) of a source on z0, at one frequency: (Z, n).
+
+    v_x jumps at an interface: there it is that of the medium behind, so places are told apart a few units of the last place
+    behind z. v_z is continuous.
+    """
+    out = np.empty((z.size, kx.size), complex)
+    at = z + AT_INTERFACE * np.maximum(np.abs(z), s.thickness) if quantity == "v_x" else z
+    front, behind = at <= 0, at >= s.thickness
+    inside = ~front & ~behind
+    response = s.response(kx, at[inside], quantity)
+    kz = s.kz_before(kx)[0]
+    launch = propagation(kz, -z0)
+    with np.errstate(under="ignore"):
+        if front.any():
+            depth, back = z[front][:, None], response.r[0] * launch
+            forth = propagation(kz, depth - z0)
+            back = back * propagation(kz, -depth)
+            out[front] = s.velocity(kx, quantity, False)[0] * (forth - back if quantity == "v_z" else forth + back)
+        if inside.any():
+            out[inside] = response.inside[0] * launch
+        if behind.any():
+            distance = np.maximum(z[behind] - s.thickness, 0.0)[:, None]
+            through = response.t[0] * launch * propagation(s.kz_after(kx)[0], distance)
+            out[behind] = s.velocity(kx, quantity, True)[0] * through
     return out
 
 

@@ -60,7 +60,7 @@ class Profile(Tilted):
         if not np.all(np.isfinite(p)):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
-            raise ValueError("p: expected a profile that is not zero everywhere")
+            raise ValueError("p: expected a profile that is not zero everywhere, got zeros")
         steps = np.diff(x)
         if np.ptp(steps) > EVEN * steps.min():
             from scipy.interpolate import CubicSpline

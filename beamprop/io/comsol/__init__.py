@@ -129,7 +129,8 @@ def to_grid(ds: xr.Dataset, x: Any, z: Any) -> xr.Dataset:
     2.25
     """
     if not isinstance(ds, xr.Dataset) or "node" not in ds.dims:
-        raise ValueError(f"ds: expected a dataset with the dim 'node', got {getattr(ds, 'dims', type(ds).__name__)}")
+        dims = ", ".join(map(str, ds.dims)) or "none" if isinstance(ds, xr.Dataset) else type(ds).__name__
+        raise ValueError(f"ds: expected a dataset with the dim 'node', got {dims}")
     axes = {name: validate.positions(v, name, increasing=True) for name, v in (("x", x), ("z", z))}
     points = axes["x"].size * axes["z"].size
     memory.check("x", 120.0 * points, f"a grid of {points:.3g} points", "take fewer points")

@@ -1,4 +1,4 @@
-"""What is written block by block."""
+"""Variables that are written block by block."""
 
 from __future__ import annotations
 
@@ -8,27 +8,29 @@ from typing import Any
 
 import numpy as np
 
-#: Where a block of a variable goes, and its values.
-Blocks = Iterable[tuple[tuple[Any, ...], np.ndarray]]
+#: Where a block goes, and the values there of each variable by name.
+Blocks = Iterable[tuple[tuple[Any, ...], dict[str, np.ndarray]]]
 
 
 @dataclass(frozen=True)
-class BlockedVariable:
-    """One complex variable that is never whole in memory.
+class BlockedVariables:
+    """Variables on the same dimensions that are never whole in memory.
 
     Attributes
     ----------
-    name : str
+    kinds : dict
+        Name -> type of its values, complex or float.
     sizes : dict
-        Dimension -> length, in the variable's order.
+        Dimension -> length, in the variables' order.
     chunks : tuple of int
         Of the file; a block covers whole chunks.
     attrs : dict
-    blocks : iterable of (index, values)
+        Name -> attributes.
+    blocks : iterable of (index, name -> values)
     """
 
-    name: str
+    kinds: dict[str, type]
     sizes: dict[str, int]
     chunks: tuple[int, ...]
-    attrs: dict[str, Any]
+    attrs: dict[str, dict[str, Any]]
     blocks: Blocks

@@ -15,8 +15,9 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from .blocked import BlockedVariable
+from .blocked import BlockedVariables
 from .guarded import GuardedFile, uninterrupted
+from .parts import pair_attributes, plain
 from .seal import Stretch, check_seal, seal
 from .settled import Refusal, read_values, refuse_expansion
 
@@ -29,6 +30,8 @@ PROPERTIES = "_NCProperties"
 CHUNK = 2**20
 #: Space for names, attributes and tables: for a file, for each of its variables, and as a share of the values.
 FOR_FILE, FOR_VARIABLE, FOR_VALUES = 2**16, 2**13, 1 / 256
+#: Text of a fixed length in an attribute has less bytes than this, HDF5's limit of a header.
+LONGEST = 2**16 - 2**10
 #: HDF5's filters that are compiled into it or into h5py. Others are loaded from plug-ins, code of somebody's choice.
 FILTERS = {1: "deflate", 2: "shuffle", 3: "fletcher32", 4: "szip", 5: "nbit", 6: "scaleoffset", 32000: "lzf"}
 #: netCDF's mark of a dataset that stands for the length of a dimension, and is not read.
@@ -43,19 +46,26 @@ def write(draft: Path, ds: xr.Dataset, compression: int) -> None:
         _dump(ds, file, compression)
 
 
-def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
-    """Write one variable block by block, and then the others."""
-    shape = tuple(variable.sizes.values())
-    with _new(draft, _stored(shape, variable.chunks, 16), 8) as (file, guarded):
-        file.dimensions = variable.sizes
-        options: dict[str, Any] = {"chunks": variable.chunks, "fletcher32": True} if shape else {}
-        into = file.create_variable(variable.name, tuple(variable.sizes), dtype=np.dtype(complex), **options)
-        into.attrs.update(variable.attrs)
-        for where, values in variable.blocks:
-            with uninterrupted():
-                into[where] = values
-            guarded.check()
-        _dump(rest(), file, 0)
+def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr.Dataset]) -> None:
+    """Write variables block by block, complex ones as pairs of real ones, and then the others."""
+    sizes, kinds = variables.sizes, variables.kinds
+    shape = tuple(sizes.values())
+    bytes_each = sum(np.dtype(kind).itemsize for kind in kinds.values())
+    with _new(draft, _stored(shape, variables.chunks, bytes_each), 8 + len(kinds)) as (file, guarded):
+        file.dimensions = sizes
+        options: dict[str, Any] = {"chunks": variables.chunks, "fletcher32": True} if shape else {}
+        into: dict[str, list[Any]] = {name: [] for name in kinds}
+        for name, attrs in variables.attrs.items():
+            for part, own in (pair_attributes(name, attrs) if kinds[name] is complex else {name: attrs}).items():
+                into[name].append(file.create_variable(part, tuple(sizes), dtype=np.dtype(float), **options))
+                into[name][-1].attrs.update(own)
+        for where, block in variables.blocks:
+            for name, values in block.items():
+                for part, numbers in zip(into[name], (values.real, values.imag), strict=False):  # real ones have one
+                    with uninterrupted():
+                        part[where] = np.ascontiguousarray(numbers)
+                    guarded.check()
+        _dump(plain(rest()), file, 0)
 
 
 @contextlib.contextmanager
@@ -86,6 +96,7 @@ def _close(file: h5netcdf.File, h5: h5py.File) -> list[Stretch]:
     with h5:
         file.close()
         _record(h5)
+        _plain_attributes(h5)
         h5.flush()
         return [s for name, item in h5.items() for s in _stretches(name, item)]
 
@@ -98,11 +109,9 @@ def _dump(ds: xr.Dataset, file: h5netcdf.File, compression: int) -> None:
 
 def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
     """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
-    if v.dtype.kind in "OT":  # texts, of which earlier versions of xarray have to be told
-        return {"dtype": str}
-    if not v.size or not v.ndim or v.dtype.kind in "SU":
+    if not v.size or not v.ndim or v.dtype.kind in "OSU":
         return {}
-    packed = {"zlib": True, "complevel": compression} if compression else {}
+    packed = {"zlib": True, "complevel": compression, "shuffle": True} if compression else {}
     return {"fletcher32": True, "chunksizes": _chunks(v), **packed}
 
 
@@ -127,6 +136,14 @@ def _record(h5: h5py.File) -> None:
     known = h5.attrs.get(PROPERTIES, b"")
     text = (known.decode() if isinstance(known, bytes) else str(known)) + f",beamprop={token}"
     h5.attrs.create(PROPERTIES, np.bytes_(text.lstrip(",")))
+
+
+def _plain_attributes(h5: h5py.File) -> None:
+    """Give text in attributes a fixed length: text of any length is a type that Octave and earlier MATLABs do not read."""
+    for item in (h5, *h5.values()):
+        for name, value in list(item.attrs.items()):
+            if isinstance(value, str) and 0 < (length := len(value.encode())) < LONGEST:
+                item.attrs.create(name, value.encode(), dtype=h5py.string_dtype("utf-8", length))
 
 
 def _layout(h5: h5py.File) -> dict[str, Any]:
@@ -216,6 +233,7 @@ def _refuse_dataset(path: Path, where: str, item: h5py.Dataset) -> None:
 def _check_record(path: Path, h5: h5py.File) -> None:
     """Compare the variables with those that were written; a record copied from another file is none."""
     text, properties = h5.attrs.get(RECORD), h5.attrs.get(PROPERTIES, b"")
+    text = text.decode(errors="replace") if isinstance(text, bytes) else text
     if not isinstance(text, str):
         return
     try:

@@ -16,9 +16,9 @@ import errno
 import json
 import os
 import re
+import secrets
 import shutil
 import sys
-import tempfile
 import time
 import zlib
 from collections.abc import Callable, Iterator
@@ -157,9 +157,10 @@ def scratch_beside(path: Path) -> Iterator[Path]:
     """A scratch folder that is removed in the end; those that earlier runs left behind are removed first."""
     for left in scratch_of(path):
         remove_abandoned(left, path)
-    scratch = Path(tempfile.mkdtemp(prefix=_prefix(path), dir=path.parent))
+    scratch = path.parent / f"{_prefix(path)}{secrets.token_hex(8)}"
     failed = True
-    try:
+    try:  # before the folder is made, so that an interrupt in the moment after it finds this way out
+        scratch.mkdir(mode=0o700)
         with _locked(scratch):
             yield scratch
         failed = False

@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .blocked import BlockedVariable
+from .blocked import BlockedVariables
+from .parts import plain
 from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
@@ -47,7 +48,7 @@ def need_zarr() -> None:
     try:
         import zarr  # noqa: F401
     except ImportError:
-        raise ImportError('Zarr stores need zarr: pip install "beamprop[zarr]"') from None
+        raise ImportError('Zarr stores need zarr: pip install -e ".[zarr]" in the checkout') from None
 
 
 @contextlib.contextmanager
@@ -74,32 +75,36 @@ def checksum(data: bytes) -> bytes:
     return int(value(data)).to_bytes(4, "little")
 
 
-def write(draft: Path, ds: xr.Dataset) -> None:
-    """Write a dataset."""
+def write(draft: Path, ds: xr.Dataset, _level: int) -> None:
+    """Write a dataset; zlib's level does not concern Zarr."""
     need_zarr()
-    with texts_allowed():
-        ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
+    ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
 
-def write_blocks(draft: Path, variable: BlockedVariable, rest: Callable[[], xr.Dataset]) -> None:
-    """Write one complex variable block by block, and then the others."""
+def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr.Dataset]) -> None:
+    """Write variables block by block, and then the others."""
     need_zarr()
     import zarr
 
-    into = zarr.open_group(draft, mode="w").create_array(
-        variable.name,
-        shape=tuple(variable.sizes.values()),
-        dtype=complex,
-        chunks=variable.chunks,
-        compressors=_compressors(),
-        fill_value=complex(np.nan, np.nan),
-        dimension_names=list(variable.sizes),
-        attributes=variable.attrs,
-    )
-    for where, values in variable.blocks:
-        into[where] = values
-    others = rest()
+    group = zarr.open_group(draft, mode="w")
+    into = {
+        name: group.create_array(
+            name,
+            shape=tuple(variables.sizes.values()),
+            dtype=kind,
+            chunks=variables.chunks,
+            compressors=_compressors(),
+            fill_value=np.nan if kind is float else complex(np.nan, np.nan),
+            dimension_names=list(variables.sizes),
+            attributes=variables.attrs[name],
+        )
+        for name, kind in variables.kinds.items()
+    }
+    for where, block in variables.blocks:
+        for name, values in block.items():
+            into[name][where] = values
+    others = plain(rest(), pairs=False)
     others.to_zarr(
         draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False
     )
@@ -114,13 +119,15 @@ def encoding(dtype: np.dtype) -> dict[str, Any]:
 
 
 def record(store: Path) -> None:
-    """Put the checksums of a complete store into its root's attributes."""
+    """Put the checksums of a complete store into its root's attributes, and the arrays' metadata beside them (consolidated)."""
+    metadata = {folder.relative_to(store).as_posix(): about for folder, about in _nodes(store) if folder != store}
     arrays = {
-        folder.relative_to(store).as_posix(): [_digest(about), "".join(_chunk_crcs(folder, about))]
-        for folder, about in _nodes(store)
+        name: [_digest(about), "".join(_chunk_crcs(store / name, about))]
+        for name, about in metadata.items()
         if about["node_type"] == "array"
     }
     root = _metadata(store)
+    root["consolidated_metadata"] = {"kind": "inline", "must_understand": False, "metadata": metadata}
     attributes = {k: v for k, v in root.get("attributes", {}).items() if k not in (RECORD, RECORDED)}
     root["attributes"] = attributes
     sums = {"root": _digest(root), "arrays": arrays}

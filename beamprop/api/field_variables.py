@@ -1,0 +1,125 @@
+"""The variables of a field beside its pressure: particle velocity, intensity, and power through planes."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import validate
+from ..contour.error import ErrorBudget
+from ..fields.question import FieldQuestion, Prepared, fill, prepare
+from ..profiles.plane_power import power_through_planes
+from ..profiles.power import PowerError
+from ..response.sampled_slab import sample
+from ..sources.angles import AngleInterpolation
+
+#: What can be asked for, in the order of a dataset; "intensity" stands for both of its components.
+VARIABLES = ("p", "v_x", "v_z", "intensity_x", "intensity_z", "power_through")
+INTENSITY = {"intensity_x": "v_x", "intensity_z": "v_z"}
+#: What an error is relative to.
+SCALES = (
+    {name: f"the largest |{name}|" for name in ("p", "v_x", "v_z")}
+    | {name: f"{name}: half the largest |p| times the largest |{v}|" for name, v in INTENSITY.items()}
+    | {"power_through": "power_through: the incident power"}
+)
+
+
+def checked_variables(variables: Any) -> tuple[str, ...]:
+    """The names of the variables, each once and in the order of `VARIABLES`, or a ValueError."""
+    names = [variables] if isinstance(variables, str) else variables
+    expected = f"some of {', '.join((*VARIABLES, 'intensity'))}"
+    if not isinstance(names, list | tuple) or not names:
+        raise validate.refuse("variables", expected, variables)
+    for name in names:
+        if not isinstance(name, str) or name not in (*VARIABLES, "intensity"):
+            raise validate.refuse("variables", expected, name)
+    return tuple(v for v in VARIABLES if v in names or (v in INTENSITY and "intensity" in names))
+
+
+class Row(NamedTuple):
+    """A question at one frequency: what is to be filled, and the contour of each quantity that is summed for it."""
+
+    variables: tuple[str, ...]  #: those on (z, x)
+    prepared: dict[str, Prepared]
+
+    def fill(self, planes: slice, angles: slice, out: dict[str, np.ndarray]) -> dict[str, ErrorBudget]:
+        """Every variable at planes and angles into out[variable] (A, Z, X); the terms of their errors, (A,) each."""
+        if not self.variables:
+            return {}
+        shape = out[self.variables[0]].shape
+        sums = {q: out[q] if q in out else np.empty(shape, complex) for q in self.prepared}
+        budgets = {q: fill(prepared, planes, angles, sums[q]) for q, prepared in self.prepared.items()}
+        for name in set(self.variables) & set(INTENSITY):
+            p, v = sums["p"], sums[INTENSITY[name]]
+            for at in range(shape[0]):  # (1/2) Re p v*, angle by angle, which takes less memory
+                np.multiply(p[at].real, v[at].real, out=out[name][at])
+                out[name][at] += p[at].imag * v[at].imag
+            out[name] *= 0.5
+            both = zip(budgets["p"], budgets[INTENSITY[name]], strict=True)
+            budgets[name] = ErrorBudget(*(a + b for a, b in both))
+        return {name: budgets[name] for name in self.variables}
+
+
+def _summed_for(variable: str) -> tuple[str, ...]:
+    """The sums over plane waves that make a variable on (z, x)."""
+    return ("p", INTENSITY[variable]) if variable in INTENSITY else (variable,)
+
+
+def row_of(question: FieldQuestion, i: int, variables: tuple[str, ...]) -> Row:
+    """The contours at frequency i; both factors of an intensity keep half its rtol."""
+    on_map = tuple(v for v in variables if v != "power_through")
+    wanted = {q for v in on_map for q in _summed_for(v)}
+    if set(INTENSITY) & set(on_map):
+        question = dataclasses.replace(question, rtol=max(question.rtol / 2, 1e-12))
+    return Row(on_map, {q: prepare(question, i, q) for q in ("p", "v_x", "v_z") if q in wanted})
+
+
+def kinds(variables: tuple[str, ...]) -> dict[str, type]:
+    """The type of each variable on (z, x)."""
+    return {v: float if v in INTENSITY else complex for v in variables if v != "power_through"}
+
+
+def bytes_held(variables: tuple[str, ...]) -> tuple[int, int]:
+    """Bytes of all variables of a point on (z, x), and of what is summed for them and not kept."""
+    kept = kinds(variables)
+    summed = {q for v in kept for q in _summed_for(v)}
+    return sum(np.dtype(kind).itemsize for kind in kept.values()), 16 * len(summed - set(kept))
+
+
+class Errors(NamedTuple):
+    """The errors of each variable on (frequency, angle), and the terms of its worst one."""
+
+    total: dict[str, np.ndarray]
+    worst: dict[str, ErrorBudget | PowerError]
+
+    def add(self, i: int, angles: slice, budgets: dict[str, ErrorBudget]) -> None:
+        """Take those of a part at frequency i in: a beam's error is that of its worst part."""
+        for name, budget in budgets.items():
+            self.total[name][i, angles] = np.fmax(self.total[name][i, angles], budget.total)
+            worst = self.worst.get(name)
+            self.worst[name] = worst.worse(budget) if isinstance(worst, ErrorBudget) else budget.worst
+
+    @property
+    def worst_by_scale(self) -> list[tuple[ErrorBudget | PowerError, str]]:
+        """The worst error of each variable, and what it is relative to."""
+        return [(self.worst[name], SCALES[name]) for name in self.total if name in self.worst]
+
+
+def no_errors(variables: tuple[str, ...], shape: tuple[int, ...]) -> Errors:
+    """Those before anything is known: nan."""
+    return Errors({name: np.full(shape[:2], np.nan) for name in variables}, {})
+
+
+def powers(question: FieldQuestion, errors: Errors) -> np.ndarray:
+    """Power through the planes of a question on (frequency, angle, z) [W/m], with its errors."""
+    name, power = "power_through", np.empty(question.shape[:3])
+    for i, frequency in enumerate(question.frequency):
+        s = sample(question.slab, float(frequency), backward=True)
+        for j, angle in enumerate(question.angle):
+            source = AngleInterpolation(question.source, question.angle).at(float(angle))
+            power[i, j], error = power_through_planes(s, source, question.z, question.rtol, question.period)
+            errors.total[name][i, j] = error.total
+            errors.worst[name] = max(error, errors.worst.get(name, error), key=lambda e: float(np.max(e.total)))
+    return power

@@ -1,0 +1,139 @@
+"""One plain value: a number, also as text, with a fraction bar and a unit where it has one; or an axis of several."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+Axis = float | list[float]
+#: Units as powers of ten.
+LENGTHS = {"m": 0, "km": 3, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
+FREQUENCIES = {"Hz": 0, "kHz": 3, "MHz": 6, "GHz": 9}
+
+T = TypeVar("T", float, complex)
+
+
+def _read(text: str, kind: Callable[[str], T], units: Mapping[str, int]) -> T:
+    """A number, or two with a fraction bar between, and perhaps a unit; ValueError for anything else."""
+    text = text.strip()
+    try:
+        upper, bar, lower = text.partition("/")
+        return kind(upper) / kind(lower) if bar else kind(upper)
+    except ZeroDivisionError:
+        raise ValueError from None
+    except ValueError:
+        unit = max((u for u in units if text.endswith(u)), key=len, default="")
+        if not unit:
+            raise
+    power = units[unit]
+    value = _read(text.removesuffix(unit), kind, {})
+    return value * 10.0**power if power >= 0 else value / 10.0**-power  # dividing, 2 mm are 0.002 to the last bit
+
+
+def number(value: Any, name: str) -> complex:
+    """A complex number, also as text: 0.05+0.05j, or with i, or 1/20; a float where it is real."""
+    from .. import validate
+
+    expected = "a number such as 0.05 or 0.05+0.05j"
+    if isinstance(value, str):
+        try:
+            parsed = _read(value.replace(" ", "").replace("i", "j"), complex, {})
+        except ValueError:
+            raise validate.refuse(name, expected, value) from None
+    else:
+        parsed = complex(_scalar(value, name, expected))
+    return parsed if parsed.imag else parsed.real
+
+
+def real(
+    value: Any, name: str, units: Mapping[str, int] | None = None, expected: str = "a number such as 0.05 or 1/60"
+) -> float:
+    """A real number, also as text: 0.0166, 1/60."""
+    from .. import validate
+
+    if isinstance(value, str):
+        try:
+            return _read(value, float, units or {})
+        except ValueError:
+            raise validate.refuse(name, expected, value) from None
+    scalar = _scalar(value, name, "a real number")
+    if isinstance(scalar, complex):
+        raise validate.refuse(name, "a real number", value)
+    return scalar
+
+
+def length(value: Any, name: str) -> float:
+    """A length [m], as text also with a unit: 2mm."""
+    return real(value, name, LENGTHS, "a length such as 0.002 or 2mm")
+
+
+def frequency(value: Any, name: str) -> float:
+    """A frequency [Hz], as text also with a unit: 1MHz."""
+    return real(value, name, FREQUENCIES, "a frequency such as 2500 or 2.5kHz")
+
+
+def _scalar(value: Any, name: str, expected: str) -> complex | float:
+    from .. import validate
+
+    array = validate.numeric(value, name, expected)
+    if array.ndim:
+        raise validate.refuse(name, expected, value)
+    return array.item()
+
+
+def count(value: Any, name: str) -> int:
+    """A whole number of at least 1, also as text."""
+    from .. import validate
+
+    if isinstance(value, str):
+        try:
+            value = int(value)
+        except ValueError:
+            raise validate.refuse(name, "a whole number of at least 1", value) from None
+    return validate.as_count(value, name)
+
+
+def switch(value: Any, name: str) -> bool:
+    """True or False, also as text in small letters."""
+    from .. import validate
+
+    return validate.flag({"true": True, "false": False}.get(value, value) if isinstance(value, str) else value, name)
+
+
+def as_it_is(value: Any, name: str) -> Any:
+    """A value as it is: `tables.read` holds it to the parameter's words."""
+    return value
+
+
+def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
+    """A number, or several as a list; also as text: a number, numbers with commas between, or start:stop:count.
+
+    Examples
+    --------
+    >>> axis("2000:3000:3", "frequency")
+    [2000.0, 2500.0, 3000.0]
+    """
+    from .. import validate
+
+    if not isinstance(value, str):
+        return validate.axis(value, name).tolist()
+    try:
+        if ":" not in value:
+            numbers = [_read(v, float, units or {}) for v in value.split(",")]
+            return numbers[0] if len(numbers) == 1 else numbers
+        first, last, many = value.split(":")
+        start, stop, size = _read(first, float, units or {}), _read(last, float, units or {}), int(many)
+        if size < 1:
+            raise ValueError
+    except ValueError:
+        raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
+    from .. import memory
+
+    memory.check(name, 80.0 * size, f"the {size} numbers of {value!r}", "take fewer")
+    return spaced(start, stop, size)
+
+
+def spaced(start: float, stop: float, size: int) -> list[float]:
+    """Evenly spaced numbers, both ends exact."""
+    step = (stop - start) / max(1, size - 1)
+    return [start + i * step for i in range(size - 1)] + [stop if size > 1 else start]

@@ -1,0 +1,63 @@
+"""The particle velocity inside a slab, from the states that the recursion left at the faces.
+
+The state (p, q) tells both components: ``v_z = q/(i w)``, and ``v_x = kx p/(w rho_x)``, of which `fill_velocity` gives the factor of
+kx, even in kx as p and v_z are. Neither divides by a density along z, which may be 0; 1/rho_x is a layer's mobility over its
+thickness, 0 for an infinite density.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..arrays.matmul import BLOCK
+from .cell import matrix_back
+from .interior import ROWS, _at_frequency, _by_layer, _with_tails
+from .layer import State, layer_back, one_layer
+from .periods import power_back
+from .recursion import Places, Station, places_of, segment_of
+
+
+def fill_velocity(
+    stations: list[Station],
+    omega: np.ndarray,
+    kx: np.ndarray,
+    z: np.ndarray,
+    near_log: np.ndarray,
+    per_incident: np.ndarray,
+    along: str,
+) -> np.ndarray:
+    """v_z, or v_x over kx, at depths z inside the slab per unit incident pressure: (F, Z, n).
+
+    `along` is "z" or "x". A depth on an interface belongs to the layer that begins there.
+    """
+    out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
+    owner = segment_of(np.array([s.start for s in stations]), z)
+    size = max(ROWS, BLOCK // (4 * kx.shape[1]))  # depths whose states stay in the cache
+    for index, station in enumerate(stations):
+        rows = np.flatnonzero(owner == index)
+        for start in range(0, rows.size, size):
+            block = rows[start : start + size]
+            places = places_of(station.values, z[block] - station.start)
+            for i in range(kx.shape[0]):
+                w, k, at_i = omega[i : i + 1], kx[i : i + 1], _at_frequency(station, i)
+                layers = at_i.values.layers
+                for j, here, behind in _states_behind(at_i, w, k, places):
+                    state = layer_back(behind, *one_layer(layers, j, w * w, k * k, places.share[here][:, None]))
+                    v = -1j * state.q if along == "z" else state.p * (layers.mobility[j, 0] / layers.thickness[j])
+                    out[i, block[here]] = v * np.exp(state.log - near_log[i]) * (per_incident[i] / w[0])
+    return out
+
+
+def _states_behind(
+    station: Station, omega: np.ndarray, kx: np.ndarray, places: Places
+) -> Iterator[tuple[int, np.ndarray, State]]:
+    """Layers that hold depths, the indices of these, and the states at the layer's far face in their periods."""
+    if station.matrix is None or station.bloch is None:
+        yield from ((j, here, station.faces[j]) for j, here in _by_layer(places))
+        return
+    for j, here, tail in _with_tails(station.values.layers, omega, kx, places):
+        periods = station.values.periods - 1 - places.period[here]
+        state = power_back(station.matrix, station.bloch, station.far, periods[:, None])
+        yield j, here, state if tail is None else matrix_back(tail, state)
