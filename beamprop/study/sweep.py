@@ -206,16 +206,16 @@ def sample_of(study: Study) -> Sample:
     known: dict[int, Answer] = {}
     seconds: list[float] = []
     schema = None
-    for place in np.unique(np.linspace(0, study.size - 1, PLACES).astype(int)).tolist():
-        start = time.perf_counter()
-        (point,) = study.points(np.array([place]))
-        with alone() as caught:
+    places = np.unique(np.linspace(0, study.size - 1, PLACES).astype(int))
+    with alone() as caught:
+        for place, point in zip(places.tolist(), study.points(places), strict=True):
+            start = time.perf_counter()
             known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)), caught)
-        seconds.append(time.perf_counter() - start)
-        if schema is None and answer.dataset is not None:
-            schema = schema_of(answer.dataset, set(study.axes))
-        if schema is not None and (sum(seconds[1:]) > MEASURED or seconds[0] > LOADED):
-            break
+            seconds.append(time.perf_counter() - start)
+            if schema is None and answer.dataset is not None:
+                schema = schema_of(answer.dataset, set(study.axes))
+            if schema is not None and (sum(seconds[1:]) > MEASURED or seconds[0] > LOADED):
+                break
     if schema is None:
         message = next(iter(known.values())).message
         raise ValueError(
