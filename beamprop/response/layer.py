@@ -118,12 +118,10 @@ def normalised(state: State) -> State:
     return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
 
-def at_frequencies(layers: LayerValues, rows: slice | np.ndarray) -> LayerValues:
-    """Some frequencies of a cell's values."""
-    mass, compliance, mobility, vanishing = (
-        v[:, rows] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
-    )
-    return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
+def at_frequencies(layers: LayerValues, rows: slice | np.ndarray, single: bool = False) -> LayerValues:
+    """Some frequencies of a cell's values; a `single` one has the thickness (N,)."""
+    taken = LayerValues(*(v[:, rows] if v.ndim == 2 else v for v in layers))
+    return taken._replace(thickness=taken.thickness.reshape(-1)) if single else taken
 
 
 def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:

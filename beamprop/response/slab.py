@@ -117,9 +117,10 @@ def _wall(segments: list[SegmentValues]) -> np.ndarray:
     """
     wall, start = np.array(np.inf), 0.0
     for layers, periods in segments:
-        near = start + np.concatenate([[0.0], np.cumsum(layers.thickness)[:-1]])
-        wall = np.minimum(wall, np.min(np.where(layers.vanishing, near[:, None], np.inf), axis=0))
-        start += periods * float(layers.thickness.sum())
+        d = layers.thickness.reshape(len(layers.thickness), -1)
+        near = start + np.cumsum(np.concatenate([0 * d[:1], d[:-1]]), axis=0)
+        wall = np.minimum(wall, np.min(np.where(layers.vanishing, near, np.inf), axis=0))
+        start = start + periods * layers.thickness.sum(axis=0)
     return wall[:, None]
 
 
