@@ -6,7 +6,6 @@ spectrum that is not entire) is measured again by itself (`one_frequency`), with
 
 from __future__ import annotations
 
-import functools
 from dataclasses import is_dataclass, replace
 from typing import NamedTuple
 
@@ -51,7 +50,7 @@ class Row(NamedTuple):
 
 
 def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, ErrorBudget]:
-    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst error."""
+    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst errors, (F,)."""
     wavelengths = 2 * np.pi / s.k0
     # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
     launched = replace(beam, z0=0.0) if is_dataclass(beam) else beam
@@ -77,9 +76,15 @@ def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) ->
     far = measure(through, beam, rtol)
     air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
     planes = launch, near, far, air
-    worst = functools.reduce(ErrorBudget.worse, (plane.budget for plane in planes))
     row = Row(launch.width, near.width, far.width, air.width, far.peak, far.centroid)
-    return row, np.stack([plane.crossings for plane in planes]), worst
+    return row, np.stack([plane.crossings for plane in planes]), _worst([plane.budget for plane in planes])
+
+
+def _worst(budgets: list[ErrorBudget]) -> ErrorBudget:
+    """At each frequency the budget with the largest total, (F,); an unknown total, nan, is no largest one."""
+    table = np.array(budgets)  # (planes, terms, F)
+    largest = np.argmax(np.nan_to_num(table.sum(axis=1), nan=-np.inf), axis=0)
+    return ErrorBudget(*np.take_along_axis(table, largest[None, None], 0)[0])
 
 
 def _as_launched(s: SampledSlab, beam: Beam) -> Measures:

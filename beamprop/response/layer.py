@@ -124,6 +124,16 @@ def at_frequencies(layers: LayerValues, rows: slice | np.ndarray, single: bool =
     return taken._replace(thickness=taken.thickness.reshape(-1)) if single else taken
 
 
+def with_loss(layers: LayerValues, loss: float) -> LayerValues:
+    """More loss in every layer: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
+    mass, compliance, mobility = layers[:3]
+    return layers._replace(
+        mass=mass + 1j * loss * np.abs(mass),
+        compliance=compliance + 1j * loss * np.abs(compliance),
+        mobility=mobility - 1j * loss * np.abs(mobility),
+    )
+
+
 def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:
     """Each layer's mass, compliance and mobility moved by `shift` (relative) in any direction of the complex plane.
 

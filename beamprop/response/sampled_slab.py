@@ -18,7 +18,7 @@ from ..media.values import SegmentValues, half_space_values, slab_values
 from . import walls
 from .cell import cell_matrix
 from .conditioning import SHIFT
-from .layer import at_frequencies, perturbed
+from .layer import at_frequencies, perturbed, with_loss
 from .periods import bloch_phase
 from .slab import Response, dispersion, solve
 
@@ -173,8 +173,15 @@ class FluidSlab(NamedTuple):
     @property
     def lossless(self) -> bool:
         """Whether no property has an imaginary part."""
-        values = [v for seg in self.segments for v in (seg.layers.mass, seg.layers.compliance, seg.layers.mobility)]
-        return not any(np.any(v.imag) for v in (*values, *self.before, *self.after))
+        return not self.has_loss.any()
+
+    @property
+    def has_loss(self) -> np.ndarray:
+        """At which frequencies some property has an imaginary part, (F,)."""
+        values = [v for seg in self.segments for v in seg.layers[:3]]
+        return np.any(
+            [np.any(v.imag, axis=0) for v in (*values, *(v[None] for v in (*self.before, *self.after)))], axis=0
+        )
 
     @property
     def may_guide_backward(self) -> bool:
@@ -203,13 +210,9 @@ class FluidSlab(NamedTuple):
     def half_trace(self, kx: np.ndarray, loss: float = 0.0) -> np.ndarray:
         """Half the trace of one period's matrix."""
         layers = self.segments[0].layers
-        mass, compliance, mobility = (v.real for v in (layers.mass, layers.compliance, layers.mobility))
-        layers = layers._replace(
-            mass=mass + 1j * loss * np.abs(mass),
-            compliance=compliance + 1j * loss * np.abs(compliance),
-            mobility=mobility - 1j * loss * np.abs(mobility),
-        )
-        m = cell_matrix(layers, self.omega, np.atleast_2d(kx) + 0j)
+        mass, compliance, mobility = (v.real for v in layers[:3])
+        layers = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+        m = cell_matrix(with_loss(layers, loss), self.omega, np.atleast_2d(kx) + 0j)
         trace = m.a + (m.e11 + m.e22) / 2
         with np.errstate(over="ignore"):
             return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))
@@ -268,15 +271,7 @@ class FluidSlab(NamedTuple):
         """Every density and modulus with `loss` more."""
         if not loss:
             return self
-        segments = []
-        for values in self.segments:
-            layers = values.layers
-            lossy = layers._replace(
-                mass=layers.mass + 1j * loss * np.abs(layers.mass),
-                compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
-                mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
-            )
-            segments.append(values._replace(layers=lossy))
+        segments = [values._replace(layers=with_loss(values.layers, loss)) for values in self.segments]
         before, after = (
             FluidValues(
                 f.rho_z + 1j * loss * np.abs(f.rho_z),
