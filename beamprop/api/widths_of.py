@@ -44,6 +44,7 @@ def widths_of(
     Parameters
     ----------
     slabs, beams : sequences of P
+        Copies from `tolerance` are made here, all of them: give as many at a time as may be held.
     frequency : array (P,), Hz
     rtol, air_distance : float
         As in `beam_width`.
@@ -69,7 +70,7 @@ def widths_of(
     True
     """
     f = np.atleast_1d(validate.axis(frequency, "frequency", positive=True))
-    rtol = validate.rtol(rtol)
+    rtol, slabs, beams = validate.rtol(rtol), list(slabs), list(beams)
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
     for name, given in (("slabs", slabs), ("beams", beams)):
