@@ -148,7 +148,7 @@ def test_widths_of_an_aperiodic_slab():
 def test_widths_of_4500_layers():
     copies = bp.tolerance(bp.Slab(bp.lmmd_cell(), 450), 0.01, 0.01, count=3, seed=1)
     alone = [bp.beam_width(copy, BEAM, 2500.0).fwhm_out.item() for copy in copies]
-    assert np.allclose(widths_of(copies, [BEAM] * 3, [2500.0] * 3).values["fwhm_out"], alone, rtol=1e-9)
+    assert np.allclose(widths_of(copies, [BEAM] * 3, [2500.0] * 3).row.fwhm_out, alone, rtol=1e-9)
     perfect = bp.beam_width(bp.Slab(bp.lmmd_cell(), 450), BEAM, 2500.0).fwhm_out.item()
     assert 1e-6 < np.std(alone) < 0.1 * perfect
 

@@ -47,12 +47,12 @@ def test_together_is_one_by_one(beam):
     f = np.linspace(2000.0, 3000.0, len(SLABS))
     many = widths_of(SLABS, [beam] * len(SLABS), f)
     want = np.array([alone(slab, beam, float(at)) for slab, at in zip(SLABS, f, strict=True)]).T
-    got = np.array(list(many.values.values()))
+    got = np.array(many.row)
     assert np.array_equal(np.isnan(got), np.isnan(want))
     assert np.nanmax(np.abs(got[:4] - want[:4])) < 1e-8
     assert np.allclose(got[4], want[4], rtol=1e-8, equal_nan=True)
     assert np.nanmax(np.abs(got[5] - want[5])) < 1e-4  # of a window that ends at samples, which are those of all points
-    assert list(many.values) == list(bp.beam_width(SLABS[0], BEAM, 2000.0).data_vars)
+    assert list(many.row._fields) == list(bp.beam_width(SLABS[0], BEAM, 2000.0).data_vars)
 
 
 def test_any_order_and_several_beams():
@@ -63,10 +63,10 @@ def test_any_order_and_several_beams():
     order = rng.permutation(12)
     straight = widths_of(slabs, beams, f)
     mixed = widths_of([slabs[i] for i in order], [beams[i] for i in order], f[order])
-    for name, values in straight.values.items():
+    for name, values in straight.row._asdict().items():
         same = 1e-4 if name == "centroid_out" else 1e-8
-        assert np.allclose(mixed.values[name], values[order], rtol=0, atol=same, equal_nan=True), name
-    assert np.array_equal(mixed.crossings, straight.crossings[order])
+        assert np.allclose(getattr(mixed.row, name), values[order], rtol=0, atol=same, equal_nan=True), name
+    assert np.array_equal(mixed.crossings, straight.crossings[:, order])
 
 
 def test_errors_are_those_of_each_point():
@@ -74,9 +74,9 @@ def test_errors_are_those_of_each_point():
     hard = bp.Slab(bp.lmmd_cell(lossless=True), periods=450)
     easy = bp.Slab(bp.lmmd_cell(), periods=450)
     both = widths_of([easy, hard], [BEAM, BEAM], [2500.0, 2500.0])
-    single = [widths_of([slab], [BEAM], [2500.0]).error[0] for slab in (easy, hard)]
-    assert np.all(both.error > 0)
-    assert np.allclose(np.log10(both.error), np.log10(single), atol=1.0)
+    single = [widths_of([slab], [BEAM], [2500.0]).budget.total[0] for slab in (easy, hard)]
+    assert np.all(both.budget.total > 0)
+    assert np.allclose(np.log10(both.budget.total), np.log10(single), atol=1.0)
 
 
 @pytest.mark.parametrize(

@@ -13,23 +13,29 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import validate
+from ..contour.error import ErrorBudget, uniform_budget
 from ..media.structures import Slab
 from ..media.values import layout
 from ..profiles import sections
 from ..response.sampled_slab import FluidSlab, sample_all
 from ..sources.base import Beam, moved_to_origin
 from . import hints
-from .beam_width import FREQUENCIES_AT_A_TIME
+
+#: So many rows are computed together: more take no less time each.
+ROWS_AT_A_TIME = 128
 
 
 class Widths(NamedTuple):
-    """What `beam_width` reports, of P points, (P,) each."""
+    """What `beam_width` reports, and warns of, of P points."""
 
-    values: dict[str, np.ndarray]  #: by the names of its variables
-    crossings: (
-        np.ndarray
-    )  #: the most that |p| meets the half level in one of the four planes; above 2 `beam_width` warns
-    error: np.ndarray  #: the largest estimated error of |p| in them; above rtol `beam_width` warns
+    row: sections.Row  #: by the names of its variables, (P,) each
+    crossings: np.ndarray  #: how often |p| meets the half level in each of the four planes, (4, P)
+    budget: ErrorBudget  #: of the plane with the largest estimated error, terms (P,)
+
+    def at(self, i: int) -> Widths:
+        """Those of point i alone."""
+        part = slice(i, i + 1)
+        return Widths(sections.Row(*(v[part] for v in self.row)), self.crossings[:, part], self.budget.taken(part))
 
 
 def widths_of(
@@ -66,7 +72,7 @@ def widths_of(
     >>> slabs = [bp.Slab(bp.lmmd_cell(eta=eta), periods=45) for eta in (1 / 60, 1 / 50)]
     >>> together = widths_of(slabs, 2 * [bp.GaussianBeam(0.096)], [2500.0, 2500.0])
     >>> alone = [bp.beam_width(slab, bp.GaussianBeam(0.096), 2500.0).fwhm_out.item() for slab in slabs]
-    >>> bool(np.allclose(together.values["fwhm_out"], alone, rtol=1e-10))
+    >>> bool(np.allclose(together.row.fwhm_out, alone, rtol=1e-10))
     True
     """
     f = np.atleast_1d(validate.axis(frequency, "frequency", positive=True))
@@ -76,15 +82,16 @@ def widths_of(
     for name, given in (("slabs", slabs), ("beams", beams)):
         if len(given) != f.size:
             raise ValueError(f"{name}: expected {f.size}, as many as frequencies, got {len(given)}")
-    rows, met, error = np.empty((len(sections.Row._fields), f.size)), np.empty(f.size), np.empty(f.size)
+    rows, met = np.empty((len(sections.Row._fields), f.size)), np.empty((4, f.size), int)
+    terms = np.array(uniform_budget(f.size, 0.0))
     for points in _alike(slabs, beams, f):
         source, origin = moved_to_origin(beams[points[0]])
         for part, s in _sampled([slabs[i] for i in points], f[points]):
             row, crossings, budget = sections.rows(s, source, rtol, air_distance)
             here = points[part]
-            rows[:, here], met[here], error[here] = row, crossings.max(axis=0), budget.total
+            rows[:, here], met[:, here], terms[:, here] = row, crossings, budget
         rows[-1, points] += origin
-    return Widths(dict(zip(sections.Row._fields, rows, strict=True)), met, error)
+    return Widths(sections.Row(*rows), met, ErrorBudget(*terms))
 
 
 def _alike(slabs: Sequence[Slab], beams: Sequence[Beam], f: np.ndarray) -> Iterator[np.ndarray]:
@@ -97,7 +104,7 @@ def _alike(slabs: Sequence[Slab], beams: Sequence[Beam], f: np.ndarray) -> Itera
         groups.setdefault((same, layout(slab)), []).append(i)
     for points in groups.values():
         validate.instance(beams[points[0]], Beam, "beams")
-        yield from np.array_split(points, -(-len(points) // FREQUENCIES_AT_A_TIME))
+        yield from np.array_split(points, -(-len(points) // ROWS_AT_A_TIME))
 
 
 def _sampled(slabs: Sequence[Slab], f: np.ndarray) -> Iterator[tuple[np.ndarray, FluidSlab]]:
