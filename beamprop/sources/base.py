@@ -31,6 +31,7 @@ class Beam(Protocol):
     * ``moved_to_origin()``: the same source about x = 0; without it, a source stays where it is.
     * ``spectrum_ends(k0)``: the interval of kx at whose ends the spectrum is cut off, whatever its value there.
     * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`.
+    * ``launch_width``: the width of its profile, by its own ``width_of``, where it is known exactly.
     * ``width_of``: "pressure" or "intensity", the definition of its width; "pressure" without it.
     """
 
