@@ -58,8 +58,8 @@ def widths_of(
     Returns
     -------
     Widths
-        Those of `beam_width` to the same rtol, with an error estimated in the same way; `centroid_out`, of a window that ends at
-        samples, to some 1e-5 m. It warns of nothing.
+        Those of `beam_width` to the same rtol, with an error estimated in the same way; `centroid_out`, a sum over samples, to
+        1e-5 m. It warns of nothing.
 
     Raises
     ------

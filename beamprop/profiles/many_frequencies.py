@@ -211,14 +211,15 @@ def _measured(
     exact = first.evaluator()
     section = full_width(x, p, level, exact, inside, subsamples=0)
     peak = section.peak
-    size = np.where(inside, np.abs(p), 0.0)
+    size = np.abs(p)
     ends = np.argmax(inside, axis=-1), inside.shape[-1] - 1 - np.argmax(inside[:, ::-1], axis=-1)
     largest_end = np.max([np.take_along_axis(size, end[:, None], -1)[:, 0] for end in ends], axis=0)
     good = (largest_end < EDGE * level * peak) & (peak > 0) & np.isfinite(section.width)
     check = np.stack([section.left, section.right, section.position], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
         error = MARGIN * np.max(np.abs(exact(check) - second.evaluator()(check)), axis=-1) / peak
-        power = size**2
+        # each sample stands for a step, and those at the ends of the window for their share inside it
+        power = size**2 * np.clip((half - np.abs(x - middle)) / (x[:, 1:2] - x[:, :1]) + 0.5, 0.0, 1.0)
         centroid = (power * x).sum(-1) / power.sum(-1)
     error = np.nan_to_num(error, nan=1.0)
     good &= error <= rtol
