@@ -120,7 +120,7 @@ class Tilted:
 
     def at_angle(self: _Source, angle: float) -> _Source:
         """The same envelope at another angle [degree]."""
-        return replace(self, angle=angle)  # type: ignore[type-var]
+        return self if angle == self.angle else replace(self, angle=angle)  # type: ignore[type-var]
 
 
 #: Exponentials that are held at a time: 32 MB.

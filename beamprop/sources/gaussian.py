@@ -68,7 +68,7 @@ class GaussianBeam(Tilted):
 
     def moved_to_origin(self) -> GaussianBeam:
         """The same beam with x0 = 0."""
-        return replace(self, x0=0.0)
+        return replace(self, x0=0.0) if self.x0 else self
 
     @property
     def entire(self) -> bool:  # type: ignore[override]
