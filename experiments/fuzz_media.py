@@ -120,7 +120,7 @@ MEDIA_CALLS: dict[str, Entry] = {
         {"exponent": lambda r: 2 * share(r), "dispersion": lambda r: True},
     ),
     "tolerance": (
-        lambda *args, **arguments: bp.tolerance(*args, **arguments)[0],
+        lambda *args, **arguments: bp.tolerance(*args, **arguments)[0].thickness,
         {"slab": draw_slab},
         {"thickness": lambda r: 0.2 * share(r), "density": lambda r: 0.2 * share(r), "seed": lambda r: 3},
     ),

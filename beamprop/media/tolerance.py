@@ -67,10 +67,28 @@ class Copy(Slab):
     def __init__(self, tolerance: Tolerance, index: int) -> None:
         object.__setattr__(self, "tolerance", tolerance)
         object.__setattr__(self, "index", index)
-        slab = tolerance.slab
-        layers = [layer for cell, periods in slab.segments for _ in range(periods) for layer in cell.layers]
-        factors = _factors(tolerance, index, len(layers)).tolist()
-        self._fill(((Cell(tuple(map(_changed, layers, *factors))), 1),), slab.before, slab.after)
+        object.__setattr__(self, "before", tolerance.slab.before)
+        object.__setattr__(self, "after", tolerance.slab.after)
+
+    def __getattr__(self, name: str) -> Any:
+        """The layers, drawn when they are first needed: a copy that is only sent or compared needs none."""
+        if name != "segments":
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        layers = [layer for cell, n in self.tolerance.slab.segments for _ in range(n) for layer in cell.layers]
+        factors = _factors(self.tolerance, self.index, len(layers)).tolist()
+        object.__setattr__(self, name, ((Cell(tuple(map(_changed, layers, *factors))), 1),))
+        return self.segments
+
+    @property
+    def _draw(self) -> tuple[Slab, float, float, int, int]:
+        """What its layers depend on."""
+        return self.tolerance.slab, self.tolerance.thickness, self.tolerance.density, self.tolerance.seed, self.index
+
+    def __eq__(self, second: object) -> bool:
+        return self._draw == second._draw if isinstance(second, Copy) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._draw)
 
     def __reduce__(self) -> tuple[type[Copy], tuple[Tolerance, int]]:
         return Copy, (self.tolerance, self.index)
