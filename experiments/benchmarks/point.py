@@ -125,7 +125,7 @@ def main() -> None:
         for path, seen in zip(checkouts, runs, strict=True):
             seen.append(run(path))
     times = [{row: statistics.median(r[row] for r in seen) for row in seen[0]} for seen in runs]
-    print("| a point | | before | now | |\n|---|---|---|---|---|")
+    print("| a point | asked | before | now | |\n|---|---|---|---|---|")
     for row, now in times[-1].items():
         before = times[0].get(row, times[0].get(row.replace("together", "by itself").replace("a copy", "by hand")))
         old = f"{before * 1e3:.3g} ms" if arguments.before and before else "-"
