@@ -57,7 +57,7 @@ WRONG = [
     ("field --frequency 1:2:1.5", "--frequency: expected a number, a,b,c or start:stop:count, got '1:2:1.5'"),
     (
         "field --frequency 2000:3000:1000000000000",
-        "--frequency: expected a question that fits into 1.07 GB of memory, got one that takes about 80 TB for the 1000000000000 numbers of '2000:3000:1000000000000'; take fewer",
+        "--frequency: expected a question that fits into 1.07 GB of memory, got one that takes about 32 TB for the 1000000000000 numbers of '2000:3000:1000000000000'; take fewer",
     ),
     ("field --x nan --z 0", "--x: expected finite values, got nan"),
     (

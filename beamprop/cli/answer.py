@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import memory
-from ..parameters import named
+from ..parameters import is_several, named
 from .failures import attempt
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False
     for name in ("layers", "profile"):
         if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():
             raise click.UsageError(f"--output: expected a file other than that of --{name}, got {str(output)!r}")
-    several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if isinstance(value, list)]
+    several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if is_several(value)]
     ending = "" if output is None else output.suffix.lower()
     if ending == ".csv" and len(several) > 1:
         raise click.UsageError(f"--output: expected one axis for a .csv, got {' and '.join(several)}")
