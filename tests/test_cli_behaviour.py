@@ -200,7 +200,7 @@ def test_a_question_far_from_the_paper_s_design_is_told_so():
     """A hint; none at frequencies near it, with a frequency of one's own, or with layers."""
     far = ["scattering", "--periods", "5", "--angle", "0", "--frequency", "1MHz"]
     assert (
-        "warning: design_frequency: the cell is the paper's, designed for 2500 Hz; give one near 1e+06 Hz"
+        "warning: --design-frequency: the cell is the paper's, designed for 2500 Hz; give one near 1e+06 Hz"
         in good(*far).stderr
     )
     for options in (

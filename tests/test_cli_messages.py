@@ -237,7 +237,7 @@ WRONG = [
     ),
     (
         "beam_width --layers header.csv --frequency 1e6",
-        "--layers: expected columns of thickness (m, cm, mm, um), density (kg_m3, g_cm3), sound_speed (m_s, km_s), bulk_modulus (pa, kpa, mpa, gpa), attenuation (np_m, np_cm, db_m, db_cm, db_mm), reference_frequency (hz, khz, mhz), exponent, areal_density (kg_m2, g_m2), material, got 'thick'",
+        "--layers: expected columns of thickness (m, cm, mm, um), density (kg/m3, g/cm3), sound_speed (m/s, km/s), bulk_modulus (pa, kpa, mpa, gpa), attenuation (np/m, np/cm, db/m, db/cm, db/mm), reference_frequency (hz, khz, mhz), exponent, areal_density (kg/m2, g/m2), material, got 'thick'",
     ),
     (
         "beam_width --layers nothing.csv --frequency 1e6",
@@ -245,7 +245,7 @@ WRONG = [
     ),
     (
         "beam_width --layers layers.csv --layer 'water 2mm' --frequency 1e6",
-        "--layer: expected to be left out beside --layers, got ('water 2mm',)",
+        "--layer: expected to be left out beside --layers, got 'water 2mm'",
     ),
     ("beam_measures --window 0", "--window: expected a finite number above zero, got 0.0"),
     ("beam_measures --window=-1m", "--window: expected a finite number above zero, got -1.0"),

@@ -13,7 +13,7 @@ import click
 
 from .. import memory
 from ..parameters import is_several, named
-from .failures import attempt
+from .failures import attempt, in_options
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -50,7 +50,7 @@ def answer(
             printed = "\n".join([*_where(ds), summary(ds), *(f"wrote {path}" for path in files)])
     for w in caught:
         if not issubclass(w.category, DeprecationWarning):
-            click.echo(f"warning: {w.message}", err=True)
+            click.echo(f"warning: {in_options(str(w.message))}", err=True)
     if o["as_json"] or not o["quiet"]:
         click.echo(printed)
     return ds

@@ -198,10 +198,12 @@ def field(**o: Any) -> None:
 
 
 def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
-    lines = [f"{', '.join(variables)} on ({', '.join(f'{d} {n}' for d, n in ds.sizes.items())})"]
+    sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
+    lines = [f"{', '.join(variables)} on ({sizes})"] if sizes else []
     for name, v in ds.data_vars.items():
         if not str(name).startswith("error_estimate"):
-            lines.append(f"largest |{name}| {float(abs(v).max()):.6g} {v.attrs['units']}")
+            said = f"largest |{name}| {float(abs(v).max()):.6g}" if sizes else f"{name} {v.item():.6g}"
+            lines.append(f"{said} {v.attrs['units']}")
     if "error_estimate" in ds:
         lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
     return "\n".join(lines)

@@ -92,12 +92,22 @@ def field(
     for face in (0.0, ds.attrs.get("slab_thickness")):
         if face is not None and p["z"].min() <= face <= p["z"].max():
             ax.axvline(face, color=edge, ls="--", lw=0.8)
-    ax.set(xlabel="z [m]", ylabel="x [m]", aspect="equal")
+    ax.set_aspect("equal")
+    _name_lengths(ax, float(max(np.abs(p["z"]).max(), np.abs(p["x"]).max())))
     if colorbar:
         text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
         ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)
     ax.set_title(_where(ds), fontsize="medium")
     return ax
+
+
+def _name_lengths(ax: Any, largest: float) -> None:
+    """Name the axes of a map, whose ticks are told in mm or um where the map is small; its data stay in m."""
+    unit, factor = ("m", 1.0) if largest >= 0.1 else ("mm", 1e3) if largest >= 1e-4 else ("um", 1e6)
+    ax.set(xlabel=f"z [{unit}]", ylabel=f"x [{unit}]")
+    if factor > 1:
+        for axis in (ax.xaxis, ax.yaxis):
+            axis.set_major_formatter(lambda v, _: f"{v * factor:.6g}")
 
 
 def _where(ds: xr.Dataset) -> str:
@@ -162,8 +172,24 @@ def scattering(
     _lines(ds, y, along, ax, label)
     ax.set(xlabel=_short(ds, along), ylabel=_title_of(ds[quantity]))
     if len(ax.lines) > 1 or label:
-        ax.legend(fontsize="small")
+        _legend(ax)
     return ax
+
+
+#: Curves that a legend names at most: of more, this many from the first to the last, whose colours run through a colour map.
+NAMED = 8
+
+
+def _legend(ax: Any) -> None:
+    """A legend that fits, whatever the number of curves."""
+    lines = [line for line in ax.lines if line.get_label()[0] != "_"]
+    if len(lines) > NAMED:
+        import matplotlib
+
+        for i, line in enumerate(lines):
+            line.set_color(matplotlib.colormaps["viridis"](i / (len(lines) - 1)))
+        lines = [lines[i] for i in np.linspace(0, len(lines) - 1, NAMED).round().astype(int)]
+    ax.legend(handles=lines, fontsize="small")
 
 
 def _short(ds: xr.Dataset, along: str) -> str:
