@@ -13,6 +13,7 @@ import xarray as xr
 
 from .. import validate
 from .comparison import comparison as comparison
+from .lengths import name_length
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
 STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
@@ -93,21 +94,13 @@ def field(
         if face is not None and p["z"].min() <= face <= p["z"].max():
             ax.axvline(face, color=edge, ls="--", lw=0.8)
     ax.set_aspect("equal")
-    _name_lengths(ax, float(max(np.abs(p["z"]).max(), np.abs(p["x"]).max())))
+    for axis, name in ((ax.xaxis, "z"), (ax.yaxis, "x")):
+        name_length(axis, name, [np.abs(p[n]).max() for n in ("z", "x")])
     if colorbar:
         text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
         ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)
     ax.set_title(_where(ds), fontsize="medium")
     return ax
-
-
-def _name_lengths(ax: Any, largest: float) -> None:
-    """Name the axes of a map, whose ticks are told in mm or um where the map is small; its data stay in m."""
-    unit, factor = ("m", 1.0) if largest >= 0.1 else ("mm", 1e3) if largest >= 1e-4 else ("um", 1e6)
-    ax.set(xlabel=f"z [{unit}]", ylabel=f"x [{unit}]")
-    if factor > 1:
-        for axis in (ax.xaxis, ax.yaxis):
-            axis.set_major_formatter(lambda v, _: f"{v * factor:.6g}")
 
 
 def _where(ds: xr.Dataset) -> str:
