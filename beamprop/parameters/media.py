@@ -14,6 +14,27 @@ if TYPE_CHECKING:
     from ..media.fluids import Fluid
     from ..media.structures import Cell, Layer, Membrane, Slab
 
+
+def attenuation(value: Any, name: str) -> float:
+    """An attenuation [Np/m], as text also with a unit: 0.5dB/cm.
+
+    Examples
+    --------
+    >>> round(attenuation("0.5dB/cm", "attenuation"), 4)
+    5.7565
+    """
+    from ..media.tables import COLUMNS
+
+    split = re.fullmatch(r"(.*?)([A-Za-z]+/[a-z]+)", value.strip()) if isinstance(value, str) else None
+    factor = COLUMNS["attenuation"].get(split[2].lower().replace("/", "_")) if split else None
+    expected = "a number [Np/m], or such as 0.5dB/cm"
+    return (
+        real(value, name, expected=expected)
+        if not split or factor is None
+        else factor * real(split[1], name, expected=expected)
+    )
+
+
 # --- what tables hold: the paper's parameters are the defaults ----------------------------------------------
 
 #: The paper's cell.
@@ -61,7 +82,7 @@ LAYER: dict[str, Parameter] = {
     "density": Parameter(None, number, "[kg/m3]"),
     "sound_speed": Parameter(None, number, "[m/s]"),
     "bulk_modulus": Parameter(None, number, "[Pa]"),
-    "attenuation": Parameter(None, real, "Beside a speed [Np/m]."),
+    "attenuation": Parameter(None, attenuation, "Beside a speed [Np/m], or 0.5dB/cm; the same at every frequency."),
     "density_x": Parameter(None, number, "Along the layer, where it differs [kg/m3]."),
     "areal_density": Parameter(None, number, "Of a membrane [kg/m2]."),
     "thickness": Parameter(None, length, "[m]"),
@@ -110,9 +131,12 @@ def slab(table: Mapping[str, Any]) -> Slab:
 
 def _cell(table: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[Cell, Fluid]:
     from ..media.lmmd import lmmd_cell
-    from ..media.structures import Cell
+    from ..media.structures import UNSTATED, Cell
 
-    background = _half_space(table, values, "background", "density", "sound_speed")
+    if of_layers(table) and not any(table.get(name) is not None for name in BACKGROUND):
+        background = UNSTATED
+    else:
+        background = _half_space(table, values, "background", "density", "sound_speed")
     if of_layers(table):
         apart(table, tuple(LMMD), "layers" if "layers" in table else "layer")
         return Cell(_layers(table, values)), background

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-Axis = float | list[float]
+if TYPE_CHECKING:
+    import numpy as np
+
+Axis: TypeAlias = "float | np.ndarray"
 #: Units as powers of ten.
 LENGTHS = {"m": 0, "km": 3, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 FREQUENCIES = {"Hz": 0, "kHz": 3, "MHz": 6, "GHz": 9}
@@ -106,21 +109,24 @@ def as_it_is(value: Any, name: str) -> Any:
 
 
 def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
-    """A number, or several as a list; also as text: a number, numbers with commas between, or start:stop:count.
+    """A number, or several as an array; also as text: a number, numbers with commas between, or start:stop:count.
 
     Examples
     --------
     >>> axis("2000:3000:3", "frequency")
-    [2000.0, 2500.0, 3000.0]
+    array([2000., 2500., 3000.])
     """
+    import numpy as np
+
     from .. import validate
 
     if not isinstance(value, str):
-        return validate.axis(value, name).tolist()
+        numbers = validate.axis(value, name)
+        return numbers if numbers.ndim else float(numbers)
     try:
         if ":" not in value:
-            numbers = [_read(v, float, units or {}) for v in value.split(",")]
-            return numbers[0] if len(numbers) == 1 else numbers
+            several = [_read(v, float, units or {}) for v in value.split(",")]
+            return several[0] if len(several) == 1 else np.array(several)
         first, last, many = value.split(":")
         start, stop, size = _read(first, float, units or {}), _read(last, float, units or {}), int(many)
         if size < 1:
@@ -129,11 +135,20 @@ def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
         raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
     from .. import memory
 
-    memory.check(name, 80.0 * size, f"the {size} numbers of {value!r}", "take fewer")
+    memory.check(name, 32.0 * size, f"the {size} numbers of {value!r}", "take fewer")
     return spaced(start, stop, size)
 
 
-def spaced(start: float, stop: float, size: int) -> list[float]:
+def spaced(start: float, stop: float, size: int) -> np.ndarray:
     """Evenly spaced numbers, both ends exact."""
-    step = (stop - start) / max(1, size - 1)
-    return [start + i * step for i in range(size - 1)] + [stop if size > 1 else start]
+    import numpy as np
+
+    with np.errstate(invalid="ignore"):  # the question refuses what is not finite
+        numbers = start + np.arange(size) * ((stop - start) / max(1, size - 1))
+    numbers[-1] = stop if size > 1 else start
+    return numbers
+
+
+def is_several(value: Axis | None) -> bool:
+    """Whether an axis is given, and is more than a number."""
+    return value is not None and not isinstance(value, float)
