@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
+from . import lengths
 from .comparison import comparison as comparison
-from .lengths import name_length
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
 STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
@@ -95,7 +95,7 @@ def field(
             ax.axvline(face, color=edge, ls="--", lw=0.8)
     ax.set_aspect("equal")
     for axis, name in ((ax.xaxis, "z"), (ax.yaxis, "x")):
-        name_length(axis, name, [np.abs(p[n]).max() for n in ("z", "x")])
+        lengths.name_length(axis, name, [np.abs(p[n]).max() for n in ("z", "x")])
     if colorbar:
         text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
         ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from ..api.together import together
 from .axes import BOOKKEEPING
 
 #: What the status of a point may be.
@@ -86,8 +87,7 @@ def answers(task: Task) -> Result:
     numbers: dict[str, int] = {}
     names = set(task.names)
     with alone() as caught:
-        for k, point in enumerate(task.points):
-            answer = task.known.get(k) or answer_of(question, dict(zip(task.names, point, strict=True)), caught)
+        for k, answer in _in_turn(task, question, caught):
             problem = _put(answer, result, k, task.schema, names) if answer.dataset is not None else ""
             failed = answer.dataset is None or bool(problem)
             result.status[k] = FAILED if failed else DONE
@@ -95,6 +95,21 @@ def answers(task: Task) -> Result:
             text = "" if failed or answer.dataset is None else answer.dataset.attrs.get("provenance", "")
             result.record[k] = numbers.setdefault(text, len(numbers))
     return result._replace(records=list(numbers))
+
+
+#: Points that are asked together: the work around their numbers is shared, and their plane waves stay well below a gigabyte.
+TOGETHER = 128
+
+
+def _in_turn(task: Task, question: Any, caught: list[warnings.WarningMessage]) -> Iterator[tuple[int, Answer]]:
+    """The answers at all points of a task, in order; those that are not known yet are asked `together`."""
+    for start in range(0, len(task.points), TOGETHER):
+        block = range(start, min(start + TOGETHER, len(task.points)))
+        new = [k for k in block if k not in task.known]
+        arguments = [dict(zip(task.names, task.points[k], strict=True)) for k in new]
+        answered = together([functools.partial(answer_of, question, values, caught) for values in arguments])
+        known = task.known | dict(zip(new, answered, strict=True))
+        yield from ((k, known[k]) for k in block)
 
 
 def empty_result(schema: Schema, count: int, status: int, message: str) -> Result:
