@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
+    from .study.sweep import sweep
 
 _HOMES = {
     "media.attenuation": ("power_law",),
@@ -80,6 +81,7 @@ _HOMES = {
     "io.datasets": ("provenance",),
     "io.exports": ("export",),
     "io.storage": ("load", "save"),
+    "study.sweep": ("sweep",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 _MODULES = ("fem", "plot")
@@ -126,6 +128,7 @@ __all__ = [
     "save_field",
     "scattering",
     "standard_emt",
+    "sweep",
     "to_grid",
     "wood_mixture",
 ]

@@ -30,6 +30,7 @@ ORDER = [
     "comparison",
     "plot",
     "parameters",
+    "study",
     "cli",
     "__main__",
 ]
@@ -52,6 +53,7 @@ ONLY = {
     "comparison": {"validate", "sources", "profiles", "io", "api"},
     "plot": {"validate"},
     "parameters": {"memory", "validate", "media", "sources"},
+    "study": {"memory", "validate", "progress", "io", "api"},
 }
 
 

@@ -134,10 +134,16 @@ def make(
     return xr.Dataset(labelled, axes, attrs)
 
 
+def labelled(variables: dict[str, Any], coords: dict[str, Any], attrs: dict[str, Any]) -> xr.Dataset:
+    """A dataset of what has its names, units and attributes already."""
+    return xr.Dataset(variables, coords, attrs)
+
+
 def provenance(ds: xr.Dataset) -> dict[str, Any]:
     """What a dataset records of its making, with slab, cell and beam rebuilt as objects.
 
-    Of a source that is not one of the package's own its class and its text are recorded, as a dict.
+    Of a source that is not one of the package's own its class and its text are recorded, as a dict. Of a point of a `sweep` it is what
+    the question recorded there; of points that differ in it, the study.
 
     Examples
     --------
@@ -147,8 +153,23 @@ def provenance(ds: xr.Dataset) -> dict[str, Any]:
     True
     """
     validate.instance(ds, xr.Dataset, "ds")
-    text = ds.attrs.get("provenance")
+    text = _record_of_points(ds) or ds.attrs.get("provenance")
     if not isinstance(text, str):
         raise ValueError("ds: expected a dataset with the attribute provenance, got one without it")
     record = json.loads(text)
-    return {key: rebuild(value) for key, value in record.items()}
+    return {key: value if key == "study" else rebuild(value) for key, value in record.items()}
+
+
+def _record_of_points(ds: xr.Dataset) -> str:
+    """The record of a study's points, where they share one: `record` numbers it, `records` holds those of each block."""
+    if not {"record", "records"} <= set(ds.variables):
+        return ""
+    texts: set[str] = set()
+    per_block = int(ds["record"].attrs["per_block"])
+    numbers = np.unique(ds["record"].values)
+    for block in np.unique(numbers // per_block):
+        if block < 0 or len(texts) > 1:
+            return ""
+        of_block = json.loads(str(ds["records"].values[block]))
+        texts |= {of_block[number % per_block] for number in numbers[numbers // per_block == block]}
+    return texts.pop() if len(texts) == 1 else ""

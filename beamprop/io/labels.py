@@ -14,6 +14,18 @@ COORDINATES: dict[str, tuple[str, str]] = {
     "side": ("1", "reflected beam at the near face, or transmitted beam at the far face"),
 }
 
+#: Parameters that a study may vary.
+PARAMETERS: dict[str, tuple[str, str]] = {
+    "eta": ("1", "period over the wavelength at the design frequency"),
+    "periods": ("1", "number of periods"),
+    "n_layers": ("1", "layers in a period"),
+    "rho_m": ("1", "mean density over that of the background"),
+    "delta_rho": ("1", "modulation of the loss over the density of the background"),
+    "design_frequency": ("Hz", "design frequency"),
+    "thickness": ("m", "thickness"),
+    "fwhm": ("m", "full width at half maximum of |p|"),
+}
+
 #: Variables of the questions about one slab and one beam.
 ANSWERS: dict[str, tuple[str, str]] = {
     "kz": ("rad/m", "Bloch wavenumber"),
@@ -21,7 +33,6 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "direction": ("1", "energy along (+1) or against (-1) the phase, laterally; 0 where there is no mode"),
     "residual": ("1", "last step of the refinement over kx"),
     "count": ("1", "number of modes by the argument principle"),
-    "fwhm": ("m", "full width at half maximum of |p|"),
     "width_1e2": ("m", "full width at 1/e^2 of the largest |p|^2"),
     "width_second_moment": ("m", "four standard deviations of |p|^2"),
     "centroid": ("m", "centroid of |p|^2"),
@@ -91,7 +102,7 @@ COMPARISON: dict[str, tuple[str, str]] = {
 }
 
 #: All of them.
-LABELS: dict[str, tuple[str, str]] = COORDINATES | ANSWERS | COMPARISON
+LABELS: dict[str, tuple[str, str]] = COORDINATES | PARAMETERS | ANSWERS | COMPARISON
 
 
 def label(name: str) -> dict[str, str]:

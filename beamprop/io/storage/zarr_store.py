@@ -25,6 +25,8 @@ from .parts import plain
 from .settled import HARMLESS, read_values, refuse_expansion
 
 RECORD, RECORDED = "_nc_beamprop_checksums", "_nc_beamprop_checked"
+#: The root's attribute that describes a study, whose store grows block by block and has no list of checksums.
+STUDY = "_nc_beamprop_study"
 #: In place of a CRC-32: the chunk is one of fill values, which Zarr does not write.
 ABSENT = "-" * 8
 #: Largest file of metadata that is read [bytes].
@@ -56,10 +58,17 @@ def _compressors() -> list[Any]:
 # --- writing --------------------------------------------------------------------------------------------------
 
 
+def checksum(data: bytes) -> bytes:
+    """The four bytes that the codec crc32c puts behind a chunk."""
+    from google_crc32c import value
+
+    return int(value(data)).to_bytes(4, "little")
+
+
 def write(draft: Path, ds: xr.Dataset, _level: int) -> None:
     """Write a dataset; zlib's level does not concern Zarr."""
     need_zarr()
-    ds.to_zarr(draft, encoding={name: _encoding(v) for name, v in ds.variables.items()}, consolidated=False)
+    ds.to_zarr(draft, encoding={name: encoding(v.dtype) for name, v in ds.variables.items()}, consolidated=False)
     record(draft)
 
 
@@ -86,13 +95,14 @@ def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr
         for name, values in block.items():
             into[name][where] = values
     others = plain(rest(), pairs=False)
-    others.to_zarr(draft, mode="a", encoding={n: _encoding(v) for n, v in others.variables.items()}, consolidated=False)
+    others.to_zarr(draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False)
     record(draft)
 
 
-def _encoding(v: xr.Variable) -> dict[str, Any]:
+def encoding(dtype: np.dtype) -> dict[str, Any]:
+    """How an array is written."""
     # unfinished complex chunks would read as 0 + 0j otherwise
-    fill = {"fill_value": complex(np.nan, np.nan)} if v.dtype.kind == "c" else {}
+    fill = {"fill_value": complex(np.nan, np.nan)} if dtype.kind == "c" else {}
     return {"compressors": _compressors(), **fill}
 
 
@@ -125,6 +135,11 @@ def _chunk_keys(about: dict[str, Any]) -> Iterator[str]:
     return ("/".join(["c", *map(str, index)]) for index in itertools.product(*map(range, counts)))
 
 
+def chunk_files(folder: Path) -> list[Path]:
+    """The files of an array's chunks, there or not."""
+    return [folder / key for key in _chunk_keys(_metadata(folder))]
+
+
 def _chunk_crcs(folder: Path, about: dict[str, Any]) -> Iterator[str]:
     for key in _chunk_keys(about):
         try:
@@ -151,6 +166,7 @@ def read(path: Path) -> xr.Dataset:
         _refuse_foreign(path, folder, about)
     try:
         _check_record(path, nodes)
+        _check_blocks(path, nodes)
     except (LookupError, TypeError, AttributeError):
         raise ValueError(
             f"{path}: expected a store as it was written, got one whose list of checksums is none"
@@ -291,3 +307,26 @@ def _check_record(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
                 raise ValueError(f"{wrong} variable {name!r}: its chunk {key!r} {what}")
     if added := set(arrays) - set(whole["arrays"]):
         raise ValueError(f"{wrong} what it holds: {', '.join(map(repr, sorted(added)))} came later")
+
+
+def _check_blocks(path: Path, nodes: dict[Path, dict[str, Any]]) -> None:
+    """Of a study, each block that has a status has a chunk of every array, and arrays that are not in blocks have all of theirs."""
+    if STUDY not in nodes[path].get("attributes", {}):
+        return
+    status = nodes[path / "status"]
+    axes = status["dimension_names"]
+    blocks = [(k, key) for k, key in enumerate(_chunk_keys(status)) if (path / "status" / key).exists()]
+    for folder, about in nodes.items():
+        if about["node_type"] != "array":
+            continue
+        dims = about["dimension_names"]
+        if folder.name == "records":
+            keys = [f"c/{k}" for k, _ in blocks]
+        elif dims[: len(axes)] == axes and folder.name not in axes:
+            keys = [key + "/0" * (len(dims) - len(axes)) for _, key in blocks]
+        else:
+            keys = list(_chunk_keys(about))
+        for key in keys:
+            if not (folder / key).exists():
+                what = f"damage in variable {folder.name!r}: its chunk {key!r} is missing"
+                raise ValueError(f"{path}: expected a store as it was written, got one with {what}")
