@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
@@ -106,31 +107,45 @@ def as_it_is(value: Any, name: str) -> Any:
 
 
 def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
-    """A number, or several as a list; also as text: a number, numbers with commas between, or start:stop:count.
+    """A number, or several as a list; also as text: a number, numbers with commas between, start:stop:count, or
+    start:stop:count:log for even ratios.
 
     Examples
     --------
     >>> axis("2000:3000:3", "frequency")
     [2000.0, 2500.0, 3000.0]
+    >>> axis("1kHz:100kHz:3:log", "frequency", FREQUENCIES)
+    [1000.0, 10000.0, 100000.0]
     """
     from .. import validate
 
+    if isinstance(value, list) and any(isinstance(v, str) for v in value):
+        return [real(v, name, units) for v in value]
     if not isinstance(value, str):
         return validate.axis(value, name).tolist()
+    even = value.removesuffix(":log")
     try:
         if ":" not in value:
             numbers = [_read(v, float, units or {}) for v in value.split(",")]
             return numbers[0] if len(numbers) == 1 else numbers
-        first, last, many = value.split(":")
+        first, last, many = even.split(":")
         start, stop, size = _read(first, float, units or {}), _read(last, float, units or {}), int(many)
-        if size < 1:
+        if size < 1 or (even != value and not 0 < start * stop < math.inf):
             raise ValueError
     except ValueError:
         raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
     from .. import memory
 
     memory.check(name, 80.0 * size, f"the {size} numbers of {value!r}", "take fewer")
-    return spaced(start, stop, size)
+    return spaced(start, stop, size) if even == value else spaced_by_ratio(start, stop, size)
+
+
+def spaced_by_ratio(start: float, stop: float, size: int) -> list[float]:
+    """Numbers of one sign with even ratios, both ends exact."""
+    if size == 1:
+        return [start]
+    inner = [float(f"{start * (stop / start) ** (i / (size - 1)):.15g}") for i in range(1, size - 1)]
+    return [start, *inner, stop]
 
 
 def spaced(start: float, stop: float, size: int) -> list[float]:

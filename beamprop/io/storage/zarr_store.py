@@ -95,7 +95,9 @@ def write_blocks(draft: Path, variables: BlockedVariables, rest: Callable[[], xr
         for name, values in block.items():
             into[name][where] = values
     others = plain(rest(), pairs=False)
-    others.to_zarr(draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False)
+    others.to_zarr(
+        draft, mode="a", encoding={n: encoding(v.dtype) for n, v in others.variables.items()}, consolidated=False
+    )
     record(draft)
 
 
