@@ -36,6 +36,7 @@ from .tables import Parameter as Parameter
 from .tables import known
 from .tables import named as named
 from .tables import read as read
+from .tables import units_of as units_of
 from .values import FREQUENCIES, LENGTHS, Axis, axis
 from .values import as_it_is as as_it_is
 from .values import count as count
@@ -43,8 +44,10 @@ from .values import frequency as frequency
 from .values import length as length
 from .values import number as number
 from .values import real as real
+from .values import size as size
 from .values import spaced as spaced
 from .values import switch as switch
+from .values import text as text
 
 #: What a question may be asked along, and the units that its numbers may have.
 AXES: dict[str, Mapping[str, int]] = {

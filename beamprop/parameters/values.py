@@ -10,6 +10,7 @@ Axis = float | list[float]
 #: Units as powers of ten.
 LENGTHS = {"m": 0, "km": 3, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 FREQUENCIES = {"Hz": 0, "kHz": 3, "MHz": 6, "GHz": 9}
+BYTES = {"B": 0, "kB": 3, "MB": 6, "GB": 9, "TB": 12}
 
 T = TypeVar("T", float, complex)
 
@@ -104,6 +105,26 @@ def switch(value: Any, name: str) -> bool:
 def as_it_is(value: Any, name: str) -> Any:
     """A value as it is: `tables.read` holds it to the parameter's words."""
     return value
+
+
+#: The units of what a function reads.
+UNITS: dict[Callable[[Any, str], Any], Mapping[str, int]] = {length: LENGTHS, frequency: FREQUENCIES}
+
+
+def text(value: Any, name: str) -> str:
+    """A text."""
+    from .. import validate
+
+    if not isinstance(value, str) or not value:
+        raise validate.refuse(name, "a text", value)
+    return value
+
+
+def size(value: Any, name: str) -> float:
+    """A number of bytes above zero, as text also with a unit: 500MB, 2GB."""
+    from .. import validate
+
+    return validate.as_number(real(value, name, BYTES, "a size such as 500MB or 2GB"), name, positive=True)
 
 
 def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:

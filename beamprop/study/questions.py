@@ -26,7 +26,7 @@ def _axis(name: str) -> Parameter:
         parsed = isinstance(value, float) and math.isfinite(value)  # the question then says which magnitudes it can use
         return value if parsed else parameters.axis(value, given, AXES[name])
 
-    return Parameter(None, parse, "An axis.")
+    return Parameter(None, parse, "An axis.", units=AXES[name])
 
 
 def _names(value: Any, name: str) -> list[str]:
