@@ -47,7 +47,8 @@ def test_a_function_is_its_source_and_what_it_reads():
 
 def test_packages_stand_by_their_names():
     """Neither NumPy nor beamprop is followed."""
-    assert parts_of(lambda eta: bp.lmmd_cell(eta=np.sin(eta))) == {
+    question = lambda eta: bp.lmmd_cell(eta=np.sin(eta))  # noqa: E731
+    assert parts_of(question) == {
         "question.source": "bp.lmmd_cell(eta=np.sin(eta))",
         "bp.value": "beamprop",
         "np.value": "numpy",

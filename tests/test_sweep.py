@@ -2,15 +2,18 @@
 
 import functools
 import itertools
-import json
+import re
 import warnings
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
 import pytest
+import sweep as benchmark
 import xarray as xr
+from threadpoolctl import threadpool_info, threadpool_limits
 
 import beamprop as bp
+from beamprop.io import datasets
 from beamprop.study import blocks, run, sweep
 from beamprop.study.axes import study_of
 
@@ -63,7 +66,7 @@ def test_provenance_of_a_point_rebuilds_its_slab_and_beam(widths):
 def test_records_are_kept_once_in_a_block():
     """40 points with one slab have as many records as blocks, not points."""
     ds = bp.sweep(lambda frequency: width(ETA[0], frequency), {"frequency": np.linspace(2400, 2500, 40)}, workers=1)
-    per_block = [len(json.loads(text)) for text in ds.records.values.tolist()]
+    per_block = [len(datasets.unpacked(text)) for text in ds.records.values.tolist()]
     assert per_block == [1] * ds.sizes["block"]
 
 
@@ -199,6 +202,23 @@ def test_processes_take_lambdas_closures_and_partials(monkeypatch):
     assert (ds.status == 1).all()
 
 
+def blas_threads():
+    return max(library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas")
+
+
+def test_workers_have_one_blas_thread(monkeypatch):
+    """And so has this process while it answers, and not longer."""
+    monkeypatch.setattr(sweep, "START", 0.0)
+    with threadpool_limits(2):
+        before = blas_threads()
+        for workers in (1, 2):
+            ds = bp.sweep(
+                lambda v: xr.Dataset({"n": blas_threads()}), {"v": np.arange(40)}, workers=workers, progress=False
+            )
+            assert (ds.n == 1).all()
+        assert blas_threads() == before
+
+
 def test_progress_counts_points():
     seen = []
     bp.sweep(plane, {"value": np.arange(7)}, workers=1, progress=lambda items: (seen.append(k) or k for k in items))
@@ -234,3 +254,23 @@ def test_points_are_plain_numbers():
     assert study.points(np.array([0, 4])) == [("a", 0), ("b", 1)]
     assert all(type(v) is int for _, v in study.points(np.arange(6)))
     assert run.DEATHS == 2
+
+
+def test_the_overhead_of_a_block_is_what_the_benchmark_measures():
+    """Of a block of 500 points: kept in a store and sent, in less than `OVERHEAD`; a point in less than 0.1 ms."""
+    (text,) = benchmark.own_costs()
+    point, _, stored, sent = (float(number) for number in re.findall(r"([\d.]+) (?:µs|ms)", text)[:4])
+    assert 1e-3 * (stored + sent) < 2 * blocks.OVERHEAD, text
+    assert point < 100, text
+
+
+def test_records_are_short_and_bounded(monkeypatch):
+    """A hundred slabs of 20 layers take less than a third of their text; what would unfold to more than a limit is cut off."""
+    slabs = [bp.Slab(bp.lmmd_cell(eta=1 / (60 + k), n_layers=20)) for k in range(100)]
+    records = [bp.scattering(slab, 2500.0, kx=0.0).attrs["provenance"] for slab in slabs]
+    text = datasets.packed(records)
+    assert datasets.unpacked(text) == records
+    assert len(text) < 0.3 * sum(map(len, records))
+    monkeypatch.setattr(datasets, "MOST_RECORDS", 1000)
+    with pytest.raises(ValueError, match="Unterminated"):
+        datasets.unpacked(text)

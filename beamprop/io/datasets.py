@@ -6,10 +6,12 @@ settings. `describe` turns an object into such a record and `rebuild` makes the 
 
 from __future__ import annotations
 
+import base64
 import dataclasses
 import functools
 import json
 import math
+import zlib
 from typing import Any
 
 import numpy as np
@@ -52,6 +54,8 @@ _RECORDS: dict[str, type] = {
 _KINDS = frozenset(_RECORDS.values())
 #: Of a source of the user's own its class and so much of its text are recorded [characters].
 MOST_TEXT = 1000
+#: All records of a block of a study [bytes].
+MOST_RECORDS = 2**28
 
 
 def describe(value: Any, frequency: np.ndarray) -> Any:
@@ -160,6 +164,16 @@ def provenance(ds: xr.Dataset) -> dict[str, Any]:
     return {key: value if key == "study" else rebuild(value) for key, value in record.items()}
 
 
+def packed(records: list[str]) -> str:
+    """Records of provenance, which repeat one another, as a short text."""
+    return base64.b64encode(zlib.compress(json.dumps(records).encode(), 1)).decode()
+
+
+def unpacked(text: str) -> list[str]:
+    """The records again; few bytes do not ask for much memory."""
+    return list(json.loads(zlib.decompressobj().decompress(base64.b64decode(text), MOST_RECORDS)))
+
+
 def _record_of_points(ds: xr.Dataset) -> str:
     """The record of a study's points, where they share one: `record` numbers it, `records` holds those of each block."""
     if not {"record", "records"} <= set(ds.variables):
@@ -170,6 +184,6 @@ def _record_of_points(ds: xr.Dataset) -> str:
     for block in np.unique(numbers // per_block):
         if block < 0 or len(texts) > 1:
             return ""
-        of_block = json.loads(str(ds["records"].values[block]))
+        of_block = unpacked(str(ds["records"][int(block)].values))
         texts |= {of_block[number % per_block] for number in numbers[numbers // per_block == block]}
     return texts.pop() if len(texts) == 1 else ""

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from .. import memory
+from ..io import datasets
 from .axes import Study
 from .blocks import Grid
 from .claims import Unclaimed
@@ -41,7 +41,7 @@ def specs(study: Study, schema: Schema, grid: Grid) -> dict[str, Spec]:
     names = tuple(study.axes)
     flags = {"long_name": "whether a point is answered", "flag_values": [0, 1, 2], "flag_meanings": " ".join(STATUS)}
     record = {"long_name": "number of the record of provenance", "per_block": math.prod(grid.chunk)}
-    texts = {"long_name": "records of provenance, a JSON list for each block"}
+    texts = {"long_name": "records of provenance: for each block a JSON list, compressed (zlib, base64)"}
     message = {"long_name": "error of a failed point, warnings of an answered one"}
     arrays = {
         name: Spec(
@@ -67,7 +67,7 @@ def chunks_of(grid: Grid, block: int, result: Result) -> dict[str, np.ndarray]:
     parts = {name: v.reshape(*box, *v.shape[1:]) for name, v in result.values.items()}
     parts["message"] = np.array(result.messages, object).reshape(box)
     parts["record"] = (block * math.prod(grid.chunk) + result.record.astype(np.int64)).reshape(box)
-    parts["records"] = np.array([json.dumps(result.records)], object)
+    parts["records"] = np.array([datasets.packed(result.records)], object)
     parts["status"] = result.status.reshape(box)
     return parts
 

@@ -6,6 +6,7 @@ whole chunks or none, in every version of zarr, and a block of a dozen arrays ta
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import platform
@@ -20,7 +21,7 @@ from .. import validate
 from .._version import __version__
 from ..io import datasets
 from ..io.storage.whole import check_target, scratch_beside, sync
-from ..io.storage.zarr_store import STUDY, checksum, chunk_files, encoding, need_zarr
+from ..io.storage.zarr_store import STUDY, checksum, chunk_files, encoding, need_zarr, texts_allowed
 from .arrays import Spec, chunks_of, specs
 from .axes import Study
 from .blocks import Grid
@@ -29,6 +30,8 @@ from .fingerprint import parts_of, text_of
 from .work import FAILED, Field, Result, Schema
 
 FORMAT = 1
+#: Arrays of texts.
+TEXTS = ("message", "records")
 
 
 class Store:
@@ -39,7 +42,7 @@ class Store:
         _refuse_another(path, about["study"], record_of(study))
         self.path, self.seconds = path, float(about["seconds"])
         self.grid = Grid(study.shape, tuple(about["chunk"]))
-        with self.dataset() as ds:
+        with self.dataset(*TEXTS) as ds:
             self.schema = _schema(ds, study, about)
         self._specs = specs(study, self.schema, self.grid)
         own = (file for name in (*study.axes, *self.schema.coords) for file in chunk_files(path / name))
@@ -73,12 +76,11 @@ class Store:
         """What is wrong with a block that has a status: the first chunk that is missing or not as it was written."""
         return _damage(self.path, (self._file(name, block) for name in self._specs))
 
-    def failed(self, block: int) -> bool:
-        """Whether a point of a block has failed."""
-        import zarr
-
-        status = zarr.open_array(self.path / "status", mode="r")[self.grid.where(block)]
-        return bool(np.any(np.asarray(status) == FAILED))
+    def failures(self) -> list[int]:
+        """Numbers of the blocks in which a point has failed."""
+        with self.dataset(*TEXTS) as ds:
+            status = ds["status"].values
+        return [block for block in range(self.grid.size) if np.any(status[self.grid.where(block)] == FAILED)]
 
     def _file(self, name: str, block: int) -> Path:
         index = (block,) if name == "records" else self.grid.index(block)
@@ -99,9 +101,10 @@ class Store:
             got = f"{self.path} ({error.strerror})"
             raise validate.refuse("store", "one that can be written to", got) from None
 
-    def dataset(self) -> xr.Dataset:
-        """What is kept, read from the disk when it is used."""
-        return xr.open_zarr(self.path, consolidated=False, chunks=None)
+    def dataset(self, *without: str) -> xr.Dataset:
+        """What is kept, read from the disk when it is used; texts, by earlier versions of xarray, at once."""
+        with texts_allowed():
+            return xr.open_zarr(self.path, consolidated=False, chunks=None, drop_variables=without)
 
 
 def _damage(path: Path, chunks: Iterable[Path]) -> str:
@@ -147,18 +150,20 @@ def record_of(study: Study) -> dict[str, Any]:
         for name, v in study.axes.items()
     }
     versions = {"python": platform.python_version(), "numpy": np.__version__, "xarray": xr.__version__}
-    return {"beamprop": __version__, **axes, "parts": parts_of(study.question), "versions": versions}
+    record = {"beamprop": __version__, **axes, "parts": parts_of(study.question), "versions": versions}
+    digest = hashlib.sha256(json.dumps(_flat(record), sort_keys=True).encode()).hexdigest()
+    return {**record, "hash": digest}
 
 
 def _flat(record: dict[str, Any]) -> dict[str, str]:
-    own = {name: text for name, text in record.items() if name not in ("parts", "versions")}
+    own = {name: text for name, text in record.items() if name not in ("parts", "versions", "hash")}
     return own | record.get("parts", {})
 
 
 def _refuse_another(path: Path, there: dict[str, Any], here: dict[str, Any]) -> None:
     """Refuse to go on with a store of another study, parameter by parameter."""
     old, new = _flat(there), _flat(here)
-    if old != new or list(there) != list(here):
+    if old != new or list(old) != list(new):
         changed = [name for name in dict.fromkeys((*old, *new)) if old.get(name) != new.get(name)]
         lines = [f"{n}: {_short(old.get(n, 'nothing'))} there, {_short(new.get(n, 'nothing'))} here" for n in changed]
         what = "\n  ".join(lines or ["the order of the axes"])
@@ -217,7 +222,7 @@ def create(path: Path, study: Study, schema: Schema, grid: Grid, seconds: float)
         **{"variables": list(schema.fields), "secondary": schema.secondary},
     }
     coordinates = " ".join((*schema.secondary, "message", "record", "records", "status"))
-    with scratch_beside(path) as scratch:
+    with scratch_beside(path) as scratch, texts_allowed():
         draft = scratch / "draft.zarr"
         group = zarr.open_group(draft, mode="w")
         for name, spec in specs(study, schema, grid).items():

@@ -23,7 +23,7 @@ from .arrays import InMemory, specs
 from .axes import Question, Study, study_of
 from .blocks import Grid, grid_of, points_of_a_block
 from .run import Run, answer_all
-from .work import DONE, FAILED, Answer, Schema, Task, answer_of, one_thread, schema_of
+from .work import DONE, FAILED, Answer, Schema, Task, alone, answer_of, schema_of
 
 #: Points are measured for so long [s], the first aside, which pays for what is loaded once, unless it takes longer than that can; and at so
 #: many places at most.
@@ -172,9 +172,10 @@ def _check(kept: stores.Store, blocks: range, repair: bool) -> None:
         )
     if repair:
         with contextlib.closing(kept.claims()) as claims:
-            for block in blocks:
-                if kept.is_kept(block) and (block in damaged or kept.failed(block)) and claims.take(block):
-                    kept.forget(block)
+            for again in (lambda: damaged, kept.failures):
+                for block in set(again()) & set(blocks):
+                    if claims.take(block) and kept.is_kept(block):
+                        kept.forget(block)
 
 
 # --- how they come ------------------------------------------------------------------------------------------
@@ -205,16 +206,16 @@ def sample_of(study: Study) -> Sample:
     known: dict[int, Answer] = {}
     seconds: list[float] = []
     schema = None
-    for place in np.unique(np.linspace(0, study.size - 1, PLACES).astype(int)).tolist():
-        start = time.perf_counter()
-        (point,) = study.points(np.array([place]))
-        with one_thread():
-            known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)))
-        seconds.append(time.perf_counter() - start)
-        if schema is None and answer.dataset is not None:
-            schema = schema_of(answer.dataset, set(study.axes))
-        if schema is not None and (sum(seconds[1:]) > MEASURED or seconds[0] > LOADED):
-            break
+    places = np.unique(np.linspace(0, study.size - 1, PLACES).astype(int))
+    with alone() as caught:
+        for place, point in zip(places.tolist(), study.points(places), strict=True):
+            start = time.perf_counter()
+            known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)), caught)
+            seconds.append(time.perf_counter() - start)
+            if schema is None and answer.dataset is not None:
+                schema = schema_of(answer.dataset, set(study.axes))
+            if schema is not None and (sum(seconds[1:]) > MEASURED or seconds[0] > LOADED):
+                break
     if schema is None:
         message = next(iter(known.values())).message
         raise ValueError(
@@ -242,8 +243,9 @@ def _answer(study: Study, kept: InMemory | stores.Store, sample: Sample, blocks:
         return Task(question, tuple(study.axes), study.points(flat), sample.schema, known)
 
     steps.step(sum(sizes.values()) - sum(sizes[block] for block in waiting))
-    engine = way.engine(sample.seconds * sum(sizes[block] for block in waiting))
+    seconds = sample.seconds * sum(sizes[block] for block in waiting)
     with contextlib.closing(kept.claims()) as claims:
+        engine = way.engine(seconds)
         answer_all(Run(kept, claims, task, engine, lambda block: steps.step(sizes[block]), waiting))
     steps.close()
 

@@ -84,10 +84,11 @@ def answers(task: Task) -> Result:
     question = _question(task.question)
     result = empty_result(task.schema, len(task.points), EMPTY, "")
     numbers: dict[str, int] = {}
-    with one_thread():
+    names = set(task.names)
+    with alone() as caught:
         for k, point in enumerate(task.points):
-            answer = task.known.get(k) or answer_of(question, dict(zip(task.names, point, strict=True)))
-            problem = _put(answer, result, k, task.schema, set(task.names)) if answer.dataset is not None else ""
+            answer = task.known.get(k) or answer_of(question, dict(zip(task.names, point, strict=True)), caught)
+            problem = _put(answer, result, k, task.schema, names) if answer.dataset is not None else ""
             failed = answer.dataset is None or bool(problem)
             result.status[k] = FAILED if failed else DONE
             result.messages[k] = problem or answer.message
@@ -110,34 +111,32 @@ def _question(pickled: bytes) -> Any:
 
 
 @contextlib.contextmanager
-def one_thread() -> Iterator[None]:
-    """One BLAS thread, where this is the process's only business: in threads of an executor the setting belongs to all of them."""
+def alone() -> Iterator[list[warnings.WarningMessage]]:
+    """One BLAS thread, and the list of the warnings that come meanwhile.
+
+    Both are settings of a whole process. In a thread of an executor, which is not alone, they stay as they are, and warnings take their usual way.
+    """
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield []
         return
     from threadpoolctl import threadpool_limits
 
-    with threadpool_limits(1):
-        yield
+    with threadpool_limits(1), warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        yield caught
 
 
-def answer_of(question: Any, arguments: dict[str, Any]) -> Answer:
-    """Ask at one point; an error is an answer, and so are warnings.
-
-    Warnings can only be caught in the main thread of a process; in threads they take their usual way.
-    """
-    caught: list[warnings.WarningMessage] = []
+def answer_of(question: Any, arguments: dict[str, Any], caught: list[warnings.WarningMessage]) -> Answer:
+    """Ask at one point; an error is an answer, and so are the warnings that are caught."""
     try:
-        with contextlib.ExitStack() as stack:
-            if threading.current_thread() is threading.main_thread():
-                caught = stack.enter_context(warnings.catch_warnings(record=True))
-                warnings.simplefilter("always")
-            dataset = question(**arguments)
+        dataset = question(**arguments)
         if not isinstance(dataset, xr.Dataset):
             raise TypeError(f"question: expected a Dataset, got {type(dataset).__name__}")
     except Exception as error:
         return Answer(None, f"{type(error).__name__}: {error}"[:LONGEST])
-    said = dict.fromkeys(f"{w.category.__name__}: {w.message}" for w in caught)
+    finally:
+        said = dict.fromkeys(f"{w.category.__name__}: {w.message}" for w in caught)
+        caught.clear()
     return Answer(dataset, "; ".join(said)[:LONGEST])
 
 

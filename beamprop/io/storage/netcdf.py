@@ -109,7 +109,7 @@ def _dump(ds: xr.Dataset, file: h5netcdf.File, compression: int) -> None:
 
 def _encoding(v: xr.Variable, compression: int) -> dict[str, Any]:
     """Chunks with checksums for arrays of numbers; HDF5 takes filters for neither scalars nor strings of any length."""
-    if not v.size or not v.ndim or v.dtype.kind in "OSTU":
+    if not v.size or not v.ndim or v.dtype.kind in "OSU":
         return {}
     packed = {"zlib": True, "complevel": compression, "shuffle": True} if compression else {}
     return {"fletcher32": True, "chunksizes": _chunks(v), **packed}
