@@ -213,9 +213,19 @@ def test_a_million_points_are_predicted_in_a_second(tmp_path):
     assert cost.points == 10**6 <= number * largest < 1.1e6
     assert number > 10
     # r, t, four real numbers, two error estimates and two wavenumbers or more
-    assert 100e6 < cost.file < 200e6
+    assert 100e6 < cost.file < 400e6
     assert cost.seconds > 10
     assert list(tmp_path.iterdir()) == [tmp_path / "study.toml"]
+
+
+def test_the_size_of_a_store_is_predicted(tmp_path):
+    """The sum of its files, within a factor of two; the prediction itself writes nothing."""
+    study = files.read(written(tmp_path, MILLION.replace("1000", "20")))
+    cost = predict.predict(study)
+    assert not (tmp_path / "million.zarr").exists()
+    study.answer(workers=1)
+    size = sum(path.stat().st_size for path in (tmp_path / "million.zarr").rglob("*") if path.is_file())
+    assert size / 2 < cost.file < 2 * size
 
 
 def test_what_does_not_fit_is_refused_with_its_cost(tmp_path, monkeypatch):

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
+import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .. import memory, parameters
+from ..io import datasets
 from . import engine, questions
-from .axes import study_of
+from .axes import Study, study_of
 from .files import Mistakes, StudyFile
 from .schema import Mistake
 from .sweep import sample_of
@@ -23,6 +28,10 @@ DRAWN = {
 }
 #: Parts of a question's longest axis that are measured, whose difference shows what each value of it takes.
 FEWER, MORE = 2, 8
+#: What an array's own description takes in a store [bytes].
+ARRAY = 900.0
+#: So many neighbouring points show how their records of provenance compress together.
+NEIGHBOURS = 4
 
 
 class Cost(NamedTuple):
@@ -46,7 +55,7 @@ class Cost(NamedTuple):
             f"points    {self.points}" + (f", in {number} blocks of at most {largest}" if number > 1 else ""),
             f"time      about {duration(self.seconds)} on {cores}",
             f"memory    about {memory.text(self.held)}",
-            f"file      at most about {memory.text(self.file)}",
+            f"file      about {memory.text(self.file)}",
         ]
 
 
@@ -88,7 +97,25 @@ def _of_sweep(study: StudyFile) -> Cost:
         name: (*points.axes, *f.dims) for name, f in sample.schema.fields.items() if name not in sample.schema.secondary
     }
     seconds = sample.seconds * points.size / min(workers, grid.size)
-    return Cost(points.size, seconds, workers, held, points.size * each, (grid.size, largest), variables)
+    file = (
+        points.size * each
+        + grid.size * _records(points, largest)
+        + ARRAY * (len(sample.schema.fields) + len(points.axes) + 4)
+    )
+    return Cost(points.size, seconds, workers, held, file, (grid.size, largest), variables)
+
+
+def _records(points: Study, largest: int) -> float:
+    """Size of the records of provenance of a block, by those of the first points, which are neighbours as in a block."""
+    first = points.points(np.arange(min(NEIGHBOURS, largest, points.size)))
+    texts: dict[str, None] = {}
+    for point in first:
+        with contextlib.suppress(ValueError), warnings.catch_warnings():  # points that fail have no record
+            warnings.simplefilter("ignore")
+            ds = points.question(**dict(zip(points.axes, point, strict=True)))
+            texts[ds.attrs.get("provenance", "")] = None
+    single, several = len(datasets.packed(list(texts)[:1])), len(datasets.packed(list(texts)))
+    return single + (several - single) / max(1, len(first) - 1) * (largest - 1)
 
 
 def _of_question(study: StudyFile) -> Cost:
