@@ -120,9 +120,17 @@ def contents(path: Path) -> dict[str, bytes]:
 def living(pids: list[int], patience: float = 2.0) -> int:
     """How many processes outlive `patience` [s]."""
     end = time.monotonic() + patience
-    while (alive := [pid for pid in pids if os.path.exists(f"/proc/{pid}")]) and time.monotonic() < end:
+    while (alive := [pid for pid in pids if lives(pid)]) and time.monotonic() < end:
         time.sleep(0.02)
     return len(alive)
+
+
+def lives(pid: int) -> bool:
+    """Whether a process has not ended; one that has may wait in the list for whoever is to ask for its end (Z)."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
 
 
 def trial(folder: Path, fraction: float, kill: Callable, cluster: bool = False) -> tuple[bool, int, int, int]:
