@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Slab
+    from .media.tolerance import tolerance
     from .sources.gaussian import GaussianBeam
     from .sources.profile import Profile
     from .sources.slits import Slits
@@ -62,6 +63,7 @@ _HOMES = {
     "media.properties": ("Tabulated",),
     "media.membranes": ("Membrane",),
     "media.structures": ("Cell", "Layer", "Slab"),
+    "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
     "sources.gaussian": ("GaussianBeam",),
@@ -130,6 +132,7 @@ __all__ = [
     "standard_emt",
     "sweep",
     "to_grid",
+    "tolerance",
     "wood_mixture",
 ]
 

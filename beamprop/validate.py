@@ -92,6 +92,8 @@ def numeric(value: Any, name: str, expected: str = "a number or an array of numb
 
 
 def _scalar(value: Any, name: str, expected: str) -> complex | float:
+    if type(value) in (float, complex):  # of the many layers of a slab; everything else is looked at closely
+        return value
     array = numeric(value, name, expected)
     if array.ndim:
         raise refuse(name, expected, value)
@@ -129,11 +131,18 @@ def as_count(value: Any, name: str, least: int = 1) -> int:
     return int(value)
 
 
+def is_usual(number: float | complex) -> bool:
+    """Whether a number is well within `LEAST` to `MOST`, as nearly every one is: it needs no array to look at it."""
+    return 2 * LEAST <= abs(number.real) + abs(number.imag) <= MOST  # abs(number) may overflow
+
+
 def within(values: Any, name: str, *, zero: bool = False) -> None:
     """Refuse finite values of a magnitude outside of `LEAST` to `MOST`; with `zero`, small ones and zero may pass.
 
     Infinite values and NaN are looked at elsewhere.
     """
+    if isinstance(values, float | complex) and is_usual(values):
+        return
     size = np.abs(np.asarray(values))
     bad = np.isfinite(size) & (size > MOST)
     if not zero:
@@ -187,7 +196,8 @@ def angles(value: Any, name: str = "angle", *, grazing: bool = False) -> np.ndar
 def angle(value: Any, name: str = "angle") -> float:
     """One angle from the normal [degree], between -90 and 90."""
     number = as_number(value, name)
-    angles(number, name)
+    if abs(number) >= 90:
+        angles(number, name)
     return number
 
 

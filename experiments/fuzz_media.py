@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fuzz_cases import Rng, draw_text_file, fluid, magnitude, pick
+from fuzz_cases import Rng, draw_slab, draw_text_file, fluid, magnitude, pick
 
 import beamprop as bp
 
@@ -118,6 +118,11 @@ MEDIA_CALLS: dict[str, Entry] = {
         bp.power_law,
         {"db_per_cm": magnitude, "reference_frequency": magnitude},
         {"exponent": lambda r: 2 * share(r), "dispersion": lambda r: True},
+    ),
+    "tolerance": (
+        lambda *args, **arguments: bp.tolerance(*args, **arguments)[0].thickness,
+        {"slab": draw_slab},
+        {"thickness": lambda r: 0.2 * share(r), "density": lambda r: 0.2 * share(r), "seed": lambda r: 3},
     ),
     "wood_mixture": (evaluated(mixture), {"first": fluid, "second": fluid}, {"fraction": share}),
 }

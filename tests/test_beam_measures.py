@@ -108,7 +108,7 @@ def test_crossings_alone_and_together():
         face,
         True,
     )
-    together = sections.measure(route, beam, 1e-6)
+    (together,) = sections.measure([route], beam, 1e-6)
     for i in range(3):
         single = s.take(i)
         alone = one_frequency.measured_alone(

@@ -182,7 +182,9 @@ def test_scripts_that_are_called_exist():
 # --- tables -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["accuracy", "limit", "statements", "benchmarks", "shares", "steps", "materials"])
+@pytest.mark.parametrize(
+    "name", ["accuracy", "limit", "statements", "benchmarks", "shares", "steps", "materials", "point"]
+)
 def test_tables_are_filled_by_their_name(name, tmp_path):
     """Each table has one place; what is written there is the table, and nothing else of any page changes."""
     before = {page.name: page.read_text(encoding="utf-8") for page in (CHECKOUT / "docs").glob("*.md")}

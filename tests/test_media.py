@@ -116,8 +116,11 @@ def test_a_table_from_pandas():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("thickness,material\n1,unobtainium\n", "name, row 1: expected a material of beamprop.materials()"),
-        ("thickness,material\n1,steel\n1,stel\n", "name, row 2: expected a material .*, such as 'steel', got 'stel'"),
+        ("thickness,material\n1,unobtainium\n", "material, row 1: expected a material of beamprop.materials()"),
+        (
+            "thickness,material\n1,steel\n1,stel\n",
+            "material, row 2: expected a material .*, such as 'steel', got 'stel'",
+        ),
         ("thickness,material,density\n1,steel,7\n", "density, row 1: expected an empty cell beside material"),
         ("thickness (mm),material\nabc,steel\n", "thickness, row 1: expected a number, got 'abc'"),
         ("thickness,material\n1,air\n-2,air\n", "thickness, row 2: expected a finite number above zero, got -2.0"),

@@ -36,9 +36,9 @@ def test_a_width_names_the_difference_of_two_contours_at_many_frequencies(monkey
     both = many_frequencies._both_contours
 
     def off(*args):
-        first, second = both(*args)
+        first, second, near = both(*args)
         size = 1 + 2e-5 * (np.arange(len(second.right)) == 1)[:, None]
-        return first, second._replace(right=second.right * size, left=second.left * size)
+        return first, second._replace(right=second.right * size, left=second.left * size), near
 
     measured = many_frequencies._measured
 

@@ -128,3 +128,12 @@ def test_no_beam_behind_is_nan_and_said():
         ds = bp.beam_width(bp.Slab(bp.lmmd_cell(0.05 + 0.5j, 0.25), 50_000), BEAM, F)
     assert np.isnan(ds.fwhm_out)
     assert ds.fwhm_launch == pytest.approx(0.096)
+
+
+@pytest.mark.filterwarnings("ignore:the half level:RuntimeWarning")
+def test_the_centroid_does_not_depend_on_what_else_is_asked():
+    """At a frequency alone the window has other samples than beside higher frequencies."""
+    slab, frequency = bp.Slab(bp.lmmd_cell(), 90), np.array([1500.0, 2000.0, 2500.0, 4000.0])
+    many = bp.beam_width(slab, bp.GaussianBeam(0.1, 60.0), frequency).centroid_out
+    alone = [bp.beam_width(slab, bp.GaussianBeam(0.1, 60.0), f).centroid_out.item() for f in frequency[:3]]
+    assert np.abs(many.values[:3] - alone).max() < 2e-6

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
-from ..contour.error import uniform_budget
+from ..contour.error import ErrorBudget, uniform_budget
 from ..io import datasets
 from ..media.structures import Slab
 from ..profiles import sections
@@ -18,9 +18,8 @@ from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
 from ..sources.base import Beam
 from . import checks
-
-#: Progress is shown between blocks of so many frequencies at one angle.
-FREQUENCIES_AT_A_TIME = 128
+from .together import Point, widths_known
+from .widths_of import ROWS_AT_A_TIME
 
 
 def beam_width(
@@ -76,24 +75,13 @@ def beam_width(
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
     flat, angles = beams.flat
     memory.check_table(flat.size * angles.size, 60.0)
-    names = sections.Row._fields
-    table = {name: np.empty((flat.size, angles.size)) for name in names}
-    most, worst = np.zeros(4, int), uniform_budget(1, 0.0)
-    blocks = np.array_split(np.arange(flat.size), -(-flat.size // FREQUENCIES_AT_A_TIME))
-    work = list(itertools.product(blocks, range(angles.size)))
-    for rows, j in watched(progress, work, "widths"):
-        s = sample_all(slab, flat[rows])
-        row, met, budget = sections.rows(s, beams.source.at_angle(float(angles[j])), beams.rtol, air_distance)
-        most = np.maximum(most, met.max(axis=1).astype(int))
-        worst = worst.worse(budget)
-        for name, values in row._asdict().items():
-            table[name][rows, j] = values
+    table, most, worst = _table(slab, beams, air_distance, progress)
     table["centroid_out"] += beams.origin
     checks.warn_if_inaccurate(worst, beams.rtol)
-    missing = [name for name in names if np.any(np.isnan(table[name]))]
+    missing = [name for name in table if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"no half level inside the window: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=2)
-    many = (name for name, times in zip(names, most, strict=False) if times > 2)
+    many = (name for name, times in zip(table, most, strict=False) if times > 2)
     checks.warn_of_crossings(int(most.max()), ", ".join(many))
     dims, pick = checks.dims(**beams.axes)
     return datasets.make(
@@ -106,3 +94,27 @@ def beam_width(
         rtol=beams.rtol,
         air_distance=air_distance,
     )
+
+
+def _table(
+    slab: Slab, beams: checks.Beams, air_distance: float | None, progress: Progress
+) -> tuple[dict[str, np.ndarray], np.ndarray, ErrorBudget]:
+    """Each variable (F, A), how often |p| meets the half level at most in each plane, (4,), and the largest error."""
+    flat, angles = beams.flat
+    if flat.size == angles.size == 1:
+        point = Point(slab, beams.source.at_angle(float(angles[0])), float(flat[0]), beams.rtol, air_distance)
+        if (known := widths_known(point)) is not None:
+            table = {name: values[:, None].copy() for name, values in known.row._asdict().items()}
+            return table, known.crossings[:, 0], known.budget
+    table = {name: np.empty((flat.size, angles.size)) for name in sections.Row._fields}
+    most, worst = np.zeros(4, int), uniform_budget(1, 0.0)
+    blocks = np.array_split(np.arange(flat.size), -(-flat.size // ROWS_AT_A_TIME))
+    work = list(itertools.product(blocks, range(angles.size)))
+    for rows, j in watched(progress, work, "widths"):
+        s = sample_all(slab, flat[rows])
+        row, met, budget = sections.rows(s, beams.source.at_angle(float(angles[j])), beams.rtol, air_distance)
+        most = np.maximum(most, met.max(axis=1).astype(int))
+        worst = worst.worse(budget)
+        for name, values in row._asdict().items():
+            table[name][rows, j] = values
+    return table, most, worst

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import memory
-from ..parameters import named
-from .failures import attempt
+from ..parameters import is_several, named
+from .failures import attempt, in_options
 from .typed import save_study
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def answer(
             printed = "\n".join([*_where(ds), summary(ds), *(f"wrote {path}" for path in files)])
     for w in caught:
         if not issubclass(w.category, DeprecationWarning):
-            click.echo(f"warning: {w.message}", err=True)
+            click.echo(f"warning: {in_options(str(w.message))}", err=True)
     if o["as_json"] or not o["quiet"]:
         click.echo(printed)
     return ds
@@ -73,7 +73,7 @@ def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False
     for name in ("layers", "profile"):
         if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():
             raise click.UsageError(f"--output: expected a file other than that of --{name}, got {str(output)!r}")
-    several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if isinstance(value, list)]
+    several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if is_several(value)]
     ending = "" if output is None else output.suffix.lower()
     if ending == ".csv" and len(several) > 1:
         raise click.UsageError(f"--output: expected one axis for a .csv, got {' and '.join(several)}")

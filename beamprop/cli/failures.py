@@ -11,10 +11,13 @@ import click
 T = TypeVar("T")
 #: What Python's messages advise, and what the command has for it.
 _ADVICE = {
+    "take one value by ds.isel(": "select one value in Python, as ds.isel(",
     "; pass active=True for a medium with gain": "",
     "lossless=True drops": "--lossless drops",
     "by kx_over_k0_max and strip_over_k0": "by --kx-over-k0-max and --strip-over-k0",
     ", got None": ", got none",
+    "before, after: air, for none": "--background: air, for none",
+    "background= sets both (bp.AIR if it is meant)": "it sets both half-spaces (to air if that is meant)",
     "a material of beamprop.materials()": "a material",
     "write the map to a file with save_field": "write the map to a file with --output and --memory",
 }

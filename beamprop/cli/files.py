@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..parameters import named
 from .answer import answer
 from .commands import command
 from .comsol import COMSOL, GROUP, on_grid, read, refuse_unused
@@ -105,7 +106,12 @@ def convert(source: Path, target: Path, quiet: bool, grid: Any, **o: Any) -> Non
 
     ds = answer({"output": None, "as_json": False, "quiet": True}, ask, None, str)
     options = {name: o[name] for name in ("split_complex", "digits") if o[name]}
-    attempt(lambda: write(ds, target, **options))
+
+    def written() -> None:
+        with named("TARGET", "ds", "path"):
+            write(ds, target, **options)
+
+    attempt(written)
     if not quiet:
         click.echo(f"wrote {target}")
 

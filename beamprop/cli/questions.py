@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import parameters
-from ..parameters import spaced
+from ..parameters import is_several, spaced
 from .answer import answer, check_output, check_text, progress, table
 from .commands import command
 from .failures import typed
@@ -44,7 +44,7 @@ def asking(name: str, o: dict[str, Any]) -> Callable[[], xr.Dataset]:
 
 def _needs_axis(o: dict[str, Any], *names: str) -> None:
     """Refuse --plot where each of these axes is one value that was typed."""
-    if o["plot"] and not any(isinstance(o[n], list) for n in names):
+    if o["plot"] and not any(is_several(o[n]) for n in names):
         raise click.UsageError(f"--plot: expected an axis for {' or '.join(map(typed, names))}, got one value")
 
 
@@ -73,7 +73,7 @@ def beam_width(**o: Any) -> None:
 
     if o["frequency"] is not None:
         _needs_axis(o, "frequency", "angle")
-    check_output(o, {"frequency": o["frequency"] or [], "angle": o["angle"]})
+    check_output(o, {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]})
     names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
     answer(o, asking("beam_width", o), draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
 
@@ -128,13 +128,15 @@ def field(**o: Any) -> None:
     variables = o["variables"] or ["p"]
 
     def ask() -> xr.Dataset:
+        import numpy as np
+
         from ..api.field import field
         from ..api.save_field import save_field
         from ..study.questions import field_arguments
 
         question = field_arguments(described("field", o))
         if o["as_json"]:
-            sizes = [len(question[n]) for n in ("frequency", "angle", "x", "z") if isinstance(question[n], list)]
+            sizes = [np.size(question[n]) for n in ("frequency", "angle", "x", "z")]
             check_text(math.prod(sizes) * len(variables))
         if o["memory"] is None:
             return field(**question, progress=progress(o))
@@ -146,7 +148,7 @@ def field(**o: Any) -> None:
 
         return plot.field(ds, o["quantity"])
 
-    if o["plot"] and (isinstance(o["frequency"], list) or isinstance(o["angle"], list)):
+    if o["plot"] and (is_several(o["frequency"]) or is_several(o["angle"])):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
     if o["plot"] and any(isinstance(o[n], float) for n in "xz"):
         raise click.UsageError("--plot: expected axes for --x and --z, got one value")
@@ -163,10 +165,12 @@ def field(**o: Any) -> None:
 
 
 def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
-    lines = [f"{', '.join(variables)} on ({', '.join(f'{d} {n}' for d, n in ds.sizes.items())})"]
+    sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
+    lines = [f"{', '.join(variables)} on ({sizes})"] if sizes else []
     for name, v in ds.data_vars.items():
         if not str(name).startswith("error_estimate"):
-            lines.append(f"largest |{name}| {float(abs(v).max()):.6g} {v.attrs['units']}")
+            said = f"largest |{name}| {float(abs(v).max()):.6g}" if sizes else f"{name} {v.item():.6g}"
+            lines.append(f"{said} {v.attrs['units']}")
     if "error_estimate" in ds:
         lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
     return "\n".join(lines)
@@ -232,7 +236,7 @@ def bloch(**o: Any) -> None:
         kz = ds["kz_over_k0"]
         return table(ds.assign({"Re kz/k0": kz.real, "Im kz/k0": kz.imag}), ("Re kz/k0", "Im kz/k0"))
 
-    if o["plot"] and not isinstance(kx_over_k0, list):
+    if o["plot"] and not is_several(kx_over_k0):
         raise click.UsageError("--plot: expected an axis for --kx-over-k0, got one value")
     check_output(o, {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
     answer(o, asking("bloch", o), draw, summary)

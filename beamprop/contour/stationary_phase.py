@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
 
 #: Below this |H| a difference over step H may overflow or lose digits: the smallest normal number, 2e-308, leaves 58 decades for the
@@ -60,26 +59,26 @@ FAR = 1e4
 ACROSS = 20
 
 
-def landing(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def landing(k0: Any, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half-width (F,) of windows that hold the beam after a way `path` (F,) along z.
 
     The beam's strong plane waves span the window.
     """
-    lo, hi = beam.band(s.k0, 0.3)
+    lo, hi = beam.band(k0, 0.3)
     even = bool(np.all(lo == -hi))  # H is even in kx too: half of the plane waves show all
-    k0 = s.k0[:, None]
+    k0_row = k0[:, None]
     count = 1 + (ACROSS if even else 2 * ACROSS)
-    k = np.clip(np.linspace(0 * lo if even else lo, hi, count, axis=-1), -0.98 * k0, 0.98 * k0)
-    step = 1e-4 * k0
+    k = np.clip(np.linspace(0 * lo if even else lo, hi, count, axis=-1), -0.98 * k0_row, 0.98 * k0_row)
+    step = 1e-4 * k0_row
     least, most = span(*_beside(plane, k, step), step)
     if even:
         least, most = np.minimum(least, -most), np.maximum(most, -least)
-    least, most = (np.clip(v, -FAR / s.k0, FAR / s.k0) for v in (least, most))
-    far = path > FAR / s.k0
+    least, most = (np.clip(v, -FAR / k0, FAR / k0) for v in (least, most))
+    far = path > FAR / k0
     if np.any(far):
-        pairs = zip(_far_span(s, beam, plane, path), (least, most), strict=True)
+        pairs = zip(_far_span(k0, beam, plane, path), (least, most), strict=True)
         least, most = (np.where(far, *pair) for pair in pairs)
-    return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / s.k0 + (most - least) / 2
+    return beam.centre + (most + least) / 2, 1.5 * beam.reach(1e-2) + 2 * np.pi / k0 + (most - least) / 2
 
 
 #: Plane waves that sample a far field; and the share of the largest |p| down to which its window reaches: widths are measured at half the
@@ -87,18 +86,18 @@ def landing(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray
 RAYS, BRIGHT = 401, 0.25
 
 
-def _far_span(s: SampledSlab, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _far_span(k0: Any, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The least and the most shift (F,) of the rays that are bright where they land.
 
     Rays part on a long way: |p| of a far field is |S H| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands. Only part of the
     rays is nearly as bright as the brightest, so that this window is narrower than that of all plane waves of the beam.
     """
-    lo, hi = (np.clip(v, -0.999 * s.k0, 0.999 * s.k0) for v in beam.band(s.k0, 1e-2))
-    k0, k = s.k0[:, None], np.linspace(lo, hi, RAYS, axis=-1)
-    step = np.minimum(1e-4 * k0, 0.01 * k0 / (1 + k0 * path[:, None]))  # phases turn little over a step
+    lo, hi = (np.clip(v, -0.999 * k0, 0.999 * k0) for v in beam.band(k0, 1e-2))
+    k0_row, k = k0[:, None], np.linspace(lo, hi, RAYS, axis=-1)
+    step = np.minimum(1e-4 * k0_row, 0.01 * k0_row / (1 + k0_row * path[:, None]))  # phases turn little over a step
     x, size = shifts(*_beside(plane, k, step), step)
-    spread = np.abs(np.gradient(x, axis=-1)) / (np.maximum(hi - lo, 1e-6 * s.k0)[:, None] / (RAYS - 1))
-    brightness = size * np.abs(beam.spectrum(k, k0)) / np.sqrt(spread + beam.reach(0.1) ** 2)
+    spread = np.abs(np.gradient(x, axis=-1)) / (np.maximum(hi - lo, 1e-6 * k0)[:, None] / (RAYS - 1))
+    brightness = size * np.abs(beam.spectrum(k, k0_row)) / np.sqrt(spread + beam.reach(0.1) ** 2)
     bright = brightness > BRIGHT * np.max(brightness, axis=-1, keepdims=True)
     bright[:, 1:] |= bright[:, :-1]
     bright[:, :-1] |= bright[:, 1:]

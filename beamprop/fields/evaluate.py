@@ -38,6 +38,14 @@ class Superposition(NamedTuple):
         """x from the beams' middle (X,)."""
         return self.x - self.sources.beam.centre
 
+    def up_to(self, count: int) -> Superposition:
+        """Of the first plane waves of a contour alone."""
+        contour = self.quadrature.contour
+        if count >= contour.k.size:
+            return self
+        first = contour._replace(k=contour.k[:count], weight=contour.weight[:count])
+        return self._replace(quadrature=self.quadrature._replace(contour=first, amplitudes=None))
+
 
 def evaluator(s: SampledSlab, beam: Beam, quadrature: Quadrature, h: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """p at any x on the one plane of h; amplitudes are formed once, for all x."""

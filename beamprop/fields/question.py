@@ -18,6 +18,7 @@ from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.base import Beam
 from ..sources.lateral import LateralGradient
 from . import evaluate
+from .periodic import fill_by_reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +75,8 @@ def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> E
     """
     question, s, beams, transfer, quadrature = prepared
     waves = evaluate.Superposition(s.k0, beams.taken(angles), quadrature, question.x)
-    low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
     if question.period is not None:
-        return uniform_budget(low_rank.size, np.nan)
+        fill_by_reach(waves, transfer, question.z[planes], out, question.rtol)
+        return uniform_budget(out.shape[0], np.nan)
+    low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
     return quadrature.budget.taken(angles)._replace(low_rank=low_rank)

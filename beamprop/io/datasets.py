@@ -24,6 +24,7 @@ from ..media.fluids import Fluid
 from ..media.membranes import Membrane
 from ..media.properties import Tabulated
 from ..media.structures import Cell, Layer, Slab
+from ..media.tolerance import Copy, Tolerance
 from ..sources.base import Beam
 from ..sources.gaussian import GaussianBeam
 from ..sources.profile import Profile
@@ -39,6 +40,8 @@ _RECORDS: dict[str, type] = {
         Membrane,
         Cell,
         Slab,
+        Tolerance,
+        Copy,
         GaussianBeam,
         Profile,
         Slits,
@@ -87,7 +90,7 @@ def describe(value: Any, frequency: np.ndarray) -> Any:
 
 @functools.cache
 def _field_names(kind: type) -> tuple[str, ...]:
-    return tuple(field.name for field in dataclasses.fields(kind))
+    return getattr(kind, "recorded", None) or tuple(field.name for field in dataclasses.fields(kind))
 
 
 def _number(value: Any) -> float | str:

@@ -64,12 +64,8 @@ class Fluid:
             value = getattr(self, name)
             if not callable(value) and not (name == "density_x" and value is None):
                 object.__setattr__(self, name, as_complex(value, name, PROPERTY))
-        numbers = {
-            n: v
-            for n in ("density", "bulk_modulus", "density_x")
-            if (v := getattr(self, n)) is not None and not callable(v)
-        }
-        self._check(self.active, **numbers)
+        given = (self.density, self.bulk_modulus, self.density_x)
+        self._check(self.active, *(None if callable(v) else v for v in given))
         if self.density_x is None:
             warn_of_modulus(self.density, self.bulk_modulus)
 

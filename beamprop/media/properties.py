@@ -21,6 +21,8 @@ def check_property(
     values: Any, name: str, *, gain_sign: int, active: bool, infinite: bool = False, zero: bool = True
 ) -> None:
     """Refuse NaN, infinity and zero (unless legitimate), gain, and what double precision cannot compute with."""
+    if isinstance(values, complex) and validate.is_usual(values) and gain_sign * values.imag >= 0:
+        return
     values = np.atleast_1d(np.asarray(values, dtype=complex))
     allowed = np.isfinite(values) | (np.isinf(values) if infinite else False)
     if not np.all(allowed):

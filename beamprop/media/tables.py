@@ -83,13 +83,15 @@ def _from_file(path: Any) -> tuple[list[str], list[list[Any]]]:
 def _column(header: str) -> tuple[str, float]:
     """What a column holds and the SI value of its unit: thickness, thickness_mm, thickness [mm], Thickness (mm)."""
     plain = header.lower().translate(str.maketrans("µμ³²", "uu32", "^"))
-    plain = re.sub(r"[^a-z0-9]+", "_", plain).strip("_")
+    plain = re.sub(r"^speed", "sound_speed", re.sub(r"[^a-z0-9]+", "_", plain).strip("_"))
     for name, units in COLUMNS.items():
         if plain == name:
             return name, 1.0
         if plain.startswith(name + "_") and plain[len(name) + 1 :] in units:
             return name, units[plain[len(name) + 1 :]]
-    known = ", ".join(f"{name} ({', '.join(units)})" if units else name for name, units in COLUMNS.items())
+    known = ", ".join(
+        f"{name} ({', '.join(units).replace('_', '/')})" if units else name for name, units in COLUMNS.items()
+    )
     raise validate.refuse("table", f"columns of {known}", header)
 
 

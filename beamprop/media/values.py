@@ -5,16 +5,17 @@ A kernel sees `FluidValues` of the half-spaces and `SegmentValues` of the layers
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .fluids import Fluid, FluidValues
-from .structures import Cell, Membrane, Slab
+from .structures import Cell, Layer, Membrane, Slab
 
 
 class LayerValues(NamedTuple):
-    """The layers of a cell at F frequencies: arrays (N, F), and the thickness (N,).
+    """The layers of a cell at F frequencies: arrays (N, F), and the thickness (N,), or (N, F) of a cell for each frequency.
 
     A layer's matrix needs no more than mass ``rho_z d``, compliance ``d / K`` and mobility ``d / rho_x``; a
     membrane has mass alone. Rows are divided in proportion where a layer is cut.
@@ -46,40 +47,80 @@ class Materials(NamedTuple):
     """
 
     fluid: FluidValues
-    thickness: np.ndarray  # (N,)
+    thickness: np.ndarray  # (N,), or (N, F) of a cell for each frequency
     membrane: np.ndarray  # (N,)
 
 
-def materials(cell: Cell, frequency: np.ndarray) -> Materials:
-    """A cell's layers as materials at frequencies [Hz] (1-D)."""
-    seen: dict[Fluid, FluidValues] = {}
-    rows = []
-    for layer in cell.layers:
-        if isinstance(layer, Membrane):  # mass without thickness, which does not move along x
-            rows.append(
-                FluidValues(layer.at(frequency), np.full(frequency.shape, np.inf + 0j), np.ones(frequency.shape))
-            )
-            continue
-        if layer.fluid not in seen:
-            seen[layer.fluid] = layer.fluid.at(frequency)
-        rows.append(seen[layer.fluid])
-    fluid = FluidValues(*(np.stack(column) for column in zip(*rows, strict=True)))
-    thickness = np.array([layer.thickness for layer in cell.layers])
-    return Materials(fluid, thickness, np.array([isinstance(layer, Membrane) for layer in cell.layers]))
+def materials(cell: Cell | Sequence[Cell], frequency: np.ndarray) -> Materials:
+    """Layers as materials at frequencies [Hz] (1-D): of a cell, or of a cell for each frequency.
+
+    Such cells have equally many layers, and membranes at the same places.
+    """
+    cells = [cell] if isinstance(cell, Cell) else cell
+    numbers = np.array([[_numbers(layer) for layer in cell.layers] for cell in cells], complex)
+    values = np.empty((3, numbers.shape[1], frequency.size), complex)
+    values[:] = numbers.T
+    if np.isnan(numbers).any():
+        for columns, cell in zip(np.array_split(np.arange(frequency.size), len(cells)), cells, strict=True):
+            dispersive = {layer for layer in cell.layers if _numbers(layer) is _DISPERSIVE}
+            seen = {layer: _at(layer, frequency[columns]) for layer in dispersive}
+            for j, layer in enumerate(cell.layers):
+                if layer in seen:
+                    values[:, j, columns] = seen[layer]
+    thickness = np.array([[layer.thickness for layer in cell.layers] for cell in cells]).T
+    membrane = np.array([isinstance(layer, Membrane) for layer in cells[0].layers])
+    return Materials(FluidValues(*values), thickness[:, 0] if len(cells) == 1 else thickness, membrane)
 
 
-def layer_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
-    """A cell's layers as mass, compliance and mobility at frequencies [Hz] (1-D)."""
+_DISPERSIVE = (np.nan, np.nan, np.nan)
+
+
+def _numbers(layer: Layer | Membrane) -> tuple[Any, Any, Any]:
+    """rho_z, rho_x and K of a layer whose properties are numbers. A membrane is mass without thickness, which does not move along x."""
+    row: tuple[Any, Any, Any]
+    if isinstance(layer, Membrane):
+        row = (layer.areal_density, np.inf, 1.0)
+    else:
+        fluid = layer.fluid
+        row = (fluid.density, fluid.density if fluid.density_x is None else fluid.density_x, fluid.bulk_modulus)
+    return _DISPERSIVE if callable(row[0]) or callable(row[1]) or callable(row[2]) else row
+
+
+def _at(layer: Layer | Membrane, frequency: np.ndarray) -> Any:
+    """The same of a layer with functions of frequency: (3, F)."""
+    if isinstance(layer, Layer):
+        return layer.fluid.at(frequency)
+    mass = layer.at(frequency)
+    return mass, np.full(mass.shape, np.inf), np.ones(mass.shape)
+
+
+def layer_values(cell: Cell | Sequence[Cell], frequency: np.ndarray) -> LayerValues:
+    """`materials` as mass, compliance and mobility."""
     (rho_z, rho_x, K), thickness, membrane = materials(cell, frequency)
     vanishing = (rho_z == 0) & (rho_x == 0)
     if vanishing.any():
         rho_z, rho_x = (np.where(vanishing, TINY_DENSITY, rho) for rho in (rho_z, rho_x))
     mobility = np.divide(1, rho_x, out=np.zeros(rho_x.shape, complex), where=np.isfinite(rho_x))
-    d = thickness[:, None]
+    d = thickness.reshape(len(thickness), -1)
     mass = rho_z * np.where(membrane[:, None], 1.0, d)
     return LayerValues(mass, d / K, mobility * d, thickness, vanishing)
 
 
-def slab_values(slab: Slab, frequency: np.ndarray) -> list[SegmentValues]:
-    """A slab's segments, from the near face on, at frequencies [Hz] (1-D)."""
-    return [SegmentValues(layer_values(cell, frequency), periods) for cell, periods in slab.segments]
+def slab_values(slab: Slab | Sequence[Slab], frequency: np.ndarray) -> list[SegmentValues]:
+    """Segments, from the near face on, at frequencies [Hz] (1-D): of a slab, or of a slab of the same `layout` for each frequency."""
+    slabs = [slab] if isinstance(slab, Slab) else slab
+    segments = zip(*(slab.segments for slab in slabs), strict=True)
+    return [SegmentValues(layer_values([cell for cell, _ in pairs], frequency), pairs[0][1]) for pairs in segments]
+
+
+def half_space_values(fluids: Sequence[Fluid], frequency: np.ndarray) -> FluidValues:
+    """A half-space at frequencies [Hz] (1-D): a fluid at all of them, or a fluid for each."""
+    if all(fluid == fluids[0] for fluid in fluids):
+        return fluids[0].at(frequency)
+    rows = (fluid.at(frequency[i : i + 1]) for i, fluid in enumerate(fluids))
+    return FluidValues(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+
+def layout(slab: Slab) -> tuple[tuple[int, tuple[bool, ...]], ...]:
+    """What slabs have in common whose values fit into the same arrays: for each segment its periods, and which layers are membranes."""
+    return tuple((n, tuple(isinstance(layer, Membrane) for layer in cell.layers)) for cell, n in slab.segments)

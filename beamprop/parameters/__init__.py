@@ -41,6 +41,7 @@ from .values import FREQUENCIES, LENGTHS, Axis, axis
 from .values import as_it_is as as_it_is
 from .values import count as count
 from .values import frequency as frequency
+from .values import is_several as is_several
 from .values import length as length
 from .values import number as number
 from .values import real as real

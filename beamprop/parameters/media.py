@@ -7,13 +7,34 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
-from .models import MODEL, PROPERTIES, of_model
+from .models import MODEL, of_model
 from .tables import Parameter, apart, named, read
 from .values import LENGTHS, as_it_is, count, frequency, length, number, real, switch
 
 if TYPE_CHECKING:
     from ..media.fluids import Fluid
     from ..media.structures import Cell, Layer, Membrane, Slab
+
+
+def attenuation(value: Any, name: str) -> float:
+    """An attenuation [Np/m], as text also with a unit: 0.5dB/cm.
+
+    Examples
+    --------
+    >>> round(attenuation("0.5dB/cm", "attenuation"), 4)
+    5.7565
+    """
+    from ..media.tables import COLUMNS
+
+    split = re.fullmatch(r"(.*?)([A-Za-z]+/[a-z]+)", value.strip()) if isinstance(value, str) else None
+    factor = COLUMNS["attenuation"].get(split[2].lower().replace("/", "_")) if split else None
+    expected = "a number [Np/m], or such as 0.5dB/cm"
+    return (
+        real(value, name, expected=expected)
+        if not split or factor is None
+        else factor * real(split[1], name, expected=expected)
+    )
+
 
 # --- what tables hold: the paper's parameters are the defaults ----------------------------------------------
 
@@ -57,7 +78,17 @@ SLAB: dict[str, Parameter] = CELL | {
     "after_speed": Parameter(None, number, "Of the half-space behind, if it differs [m/s]."),
 }
 #: What a layer is described by.
-LAYER: dict[str, Parameter] = PROPERTIES | MODEL | {"thickness": Parameter(None, length, "[m]")}
+LAYER: dict[str, Parameter] = {
+    "material": Parameter(None, as_it_is, "A name."),
+    "density": Parameter(None, number, "[kg/m3]"),
+    "sound_speed": Parameter(None, number, "[m/s]"),
+    "bulk_modulus": Parameter(None, number, "[Pa]"),
+    "attenuation": Parameter(None, attenuation, "Beside a speed [Np/m], or 0.5dB/cm; the same at every frequency."),
+    "density_x": Parameter(None, number, "Along the layer, where it differs [kg/m3]."),
+    "areal_density": Parameter(None, number, "Of a membrane [kg/m2]."),
+    **MODEL,
+    "thickness": Parameter(None, length, "[m]"),
+}
 #: What a half-space is described by, in place of a material's name.
 FLUID: dict[str, Parameter] = {name: p for name, p in LAYER.items() if name not in ("areal_density", "thickness")}
 #: What each part of a stack is described by.
@@ -131,9 +162,12 @@ def stack(table: Mapping[str, Any]) -> Slab:
 
 def _cell(table: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[Cell, Fluid]:
     from ..media.lmmd import lmmd_cell
-    from ..media.structures import Cell
+    from ..media.structures import UNSTATED, Cell
 
-    background = _half_space(table, values, "background", "density", "sound_speed")
+    if of_layers(table) and not any(table.get(name) is not None for name in BACKGROUND):
+        background = UNSTATED
+    else:
+        background = _half_space(table, values, "background", "density", "sound_speed")
     if of_layers(table):
         apart(table, tuple(LMMD), "layers" if "layers" in table else "layer")
         return Cell(_layers(table, values)), background

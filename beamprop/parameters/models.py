@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .tables import Parameter, apart, named
-from .values import as_it_is, frequency, length, number, real, switch
+from .values import as_it_is, frequency, length, real, switch
 
 if TYPE_CHECKING:
     from ..media.fluids import Fluid
@@ -108,16 +108,6 @@ MODEL: dict[str, Parameter] = {
     "tortuosity": Parameter(None, real, "Of porous models."),
     "viscous_length": Parameter(None, length, "Of porous models [m]."),
     "thermal_length": Parameter(None, length, "Of porous models [m]."),
-}
-#: A fluid or membrane by plain properties.
-PROPERTIES: dict[str, Parameter] = {
-    "material": Parameter(None, as_it_is, "A name."),
-    "density": Parameter(None, number, "[kg/m3]"),
-    "sound_speed": Parameter(None, number, "[m/s]"),
-    "bulk_modulus": Parameter(None, number, "[Pa]"),
-    "attenuation": Parameter(None, real, "Beside a speed [Np/m]."),
-    "density_x": Parameter(None, number, "Along the layer, where it differs [kg/m3]."),
-    "areal_density": Parameter(None, number, "Of a membrane [kg/m2]."),
 }
 
 

@@ -13,6 +13,8 @@ from .media import CELL, of_layers
 from .values import Axis, frequency, number, spaced
 
 if TYPE_CHECKING:
+    import numpy as np
+
     from ..media.fluids import Fluid
 
 #: Wavelength of the paper's design [m].
@@ -34,7 +36,7 @@ class Design(NamedTuple):
         return self.wavelength / PAPER
 
     @property
-    def band(self) -> list[float]:
+    def band(self) -> np.ndarray:
         """Frequencies about the design's [Hz]."""
         return spaced(0.8 * self.frequency, 1.2 * self.frequency, 101)
 
@@ -44,11 +46,11 @@ class Design(NamedTuple):
         return -0.1 * self.scale
 
     @property
-    def x(self) -> list[float]:
+    def x(self) -> np.ndarray:
         """Lateral positions about the beam [m]."""
         return spaced(-0.7 * self.scale, 0.7 * self.scale, 561)
 
-    def z(self, launch: float, thickness: float) -> list[float]:
+    def z(self, launch: float, thickness: float) -> np.ndarray:
         """Depths from the launch plane to behind a slab of a thickness [m]: a quarter of it, and of a few layers two wavelengths."""
         behind = max(0.25 * thickness, 2 * self.wavelength if self.layered else 0.0)
         return spaced(launch, thickness + behind if self.layered else 1.25 * thickness, 561)
@@ -62,7 +64,7 @@ def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -
     table : mapping of str to plain values
     before : Fluid
         In front of the slab.
-    asked : float or list of float, Hz, optional
+    asked : float or array, Hz, optional
         The frequencies of the question. The paper's cell has a frequency of its own; of other layers, the middle of these is taken.
 
     Raises
@@ -81,7 +83,7 @@ def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -
     elif asked is None:
         raise ValueError("frequency: expected a frequency [Hz] for these layers, got none")
     else:
-        middle = (min(asked) + max(asked)) / 2 if isinstance(asked, list) else asked
+        middle = asked if isinstance(asked, float) else float(asked.min() + asked.max()) / 2
     if not layered and asked is not None and "design_frequency" not in table:
         _hint(middle, asked)
     return Design(middle, _wavelength(table, before, middle), layered)
@@ -93,9 +95,9 @@ def _hint(middle: float, asked: Axis) -> None:
 
     from ..media.hints import HintWarning
 
-    several = asked if isinstance(asked, list) else [asked]
-    if min(several) > FAR * middle or max(several) < middle / FAR:
-        said = f"design_frequency: the cell is the paper's, designed for {middle:g} Hz; give one near {several[0]:g} Hz to scale it"
+    first, least, most = (asked,) * 3 if isinstance(asked, float) else (asked[0], asked.min(), asked.max())
+    if least > FAR * middle or most < middle / FAR:
+        said = f"design_frequency: the cell is the paper's, designed for {middle:g} Hz; give one near {first:g} Hz to scale it"
         warnings.warn(said, HintWarning, stacklevel=3)
 
 

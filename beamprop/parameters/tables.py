@@ -72,7 +72,9 @@ def apart(table: Mapping[str, Any], names: tuple[str, ...], beside: str) -> None
     """Refuse those of `names` that a table gives beside another key, with which they mean nothing."""
     for name in names:
         if table.get(name) is not None and table[name] is not False:
-            raise ValueError(f"{name}: expected to be left out beside {beside}, got {table[name]!r}")
+            given = table[name]
+            shown = ", ".join(map(repr, given)) if isinstance(given, tuple | list) else repr(given)
+            raise ValueError(f"{name}: expected to be left out beside {beside}, got {shown}")
 
 
 @contextmanager

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-Axis = float | list[float]
+if TYPE_CHECKING:
+    import numpy as np
+
+Axis: TypeAlias = "float | np.ndarray"
 #: Units as powers of ten.
 LENGTHS = {"m": 0, "km": 3, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 FREQUENCIES = {"Hz": 0, "kHz": 3, "MHz": 6, "GHz": 9}
@@ -128,27 +131,30 @@ def size(value: Any, name: str) -> float:
 
 
 def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
-    """A number, or several as a list; also as text: a number, numbers with commas between, start:stop:count, or
+    """A number, or several as an array; also as text: a number, numbers with commas between, start:stop:count, or
     start:stop:count:log for even ratios.
 
     Examples
     --------
     >>> axis("2000:3000:3", "frequency")
-    [2000.0, 2500.0, 3000.0]
+    array([2000., 2500., 3000.])
     >>> axis("1kHz:100kHz:3:log", "frequency", FREQUENCIES)
-    [1000.0, 10000.0, 100000.0]
+    array([  1000.,  10000., 100000.])
     """
+    import numpy as np
+
     from .. import validate
 
     if isinstance(value, list) and any(isinstance(v, str) for v in value):
-        return [real(v, name, units) for v in value]
+        return np.array([real(v, name, units) for v in value])
     if not isinstance(value, str):
-        return validate.axis(value, name).tolist()
+        numbers = validate.axis(value, name)
+        return numbers if numbers.ndim else float(numbers)
     even = value.removesuffix(":log")
     try:
         if ":" not in value:
-            numbers = [_read(v, float, units or {}) for v in value.split(",")]
-            return numbers[0] if len(numbers) == 1 else numbers
+            several = [_read(v, float, units or {}) for v in value.split(",")]
+            return several[0] if len(several) == 1 else np.array(several)
         first, last, many = even.split(":")
         start, stop, size = _read(first, float, units or {}), _read(last, float, units or {}), int(many)
         if size < 1 or (even != value and not 0 < start * stop < math.inf):
@@ -157,19 +163,29 @@ def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
         raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
     from .. import memory
 
-    memory.check(name, 80.0 * size, f"the {size} numbers of {value!r}", "take fewer")
+    memory.check(name, 32.0 * size, f"the {size} numbers of {value!r}", "take fewer")
     return spaced(start, stop, size) if even == value else spaced_by_ratio(start, stop, size)
 
 
-def spaced_by_ratio(start: float, stop: float, size: int) -> list[float]:
+def spaced_by_ratio(start: float, stop: float, size: int) -> np.ndarray:
     """Numbers of one sign with even ratios, both ends exact."""
+    import numpy as np
+
     if size == 1:
-        return [start]
-    inner = [float(f"{start * (stop / start) ** (i / (size - 1)):.15g}") for i in range(1, size - 1)]
-    return [start, *inner, stop]
+        return np.array([start])
+    return np.geomspace(start, stop, size)
 
 
-def spaced(start: float, stop: float, size: int) -> list[float]:
+def spaced(start: float, stop: float, size: int) -> np.ndarray:
     """Evenly spaced numbers, both ends exact."""
-    step = (stop - start) / max(1, size - 1)
-    return [start + i * step for i in range(size - 1)] + [stop if size > 1 else start]
+    import numpy as np
+
+    with np.errstate(invalid="ignore"):  # the question refuses what is not finite
+        numbers = start + np.arange(size) * ((stop - start) / max(1, size - 1))
+    numbers[-1] = stop if size > 1 else start
+    return numbers
+
+
+def is_several(value: Axis | None) -> bool:
+    """Whether an axis is given, and is more than a number."""
+    return value is not None and not isinstance(value, float)

@@ -13,6 +13,7 @@ import xarray as xr
 
 from .. import validate
 from .comparison import comparison as comparison
+from .lengths import name_length
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
 STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
@@ -92,7 +93,9 @@ def field(
     for face in (0.0, ds.attrs.get("slab_thickness")):
         if face is not None and p["z"].min() <= face <= p["z"].max():
             ax.axvline(face, color=edge, ls="--", lw=0.8)
-    ax.set(xlabel="z [m]", ylabel="x [m]", aspect="equal")
+    ax.set_aspect("equal")
+    for axis, name in ((ax.xaxis, "z"), (ax.yaxis, "x")):
+        name_length(axis, name, [np.abs(p[n]).max() for n in ("z", "x")])
     if colorbar:
         text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
         ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)
@@ -162,8 +165,24 @@ def scattering(
     _lines(ds, y, along, ax, label)
     ax.set(xlabel=_short(ds, along), ylabel=_title_of(ds[quantity]))
     if len(ax.lines) > 1 or label:
-        ax.legend(fontsize="small")
+        _legend(ax)
     return ax
+
+
+#: Curves that a legend names at most: of more, this many from the first to the last, whose colours run through a colour map.
+NAMED = 8
+
+
+def _legend(ax: Any) -> None:
+    """A legend that fits, whatever the number of curves."""
+    lines = [line for line in ax.lines if line.get_label()[0] != "_"]
+    if len(lines) > NAMED:
+        import matplotlib
+
+        for i, line in enumerate(lines):
+            line.set_color(matplotlib.colormaps["viridis"](i / (len(lines) - 1)))
+        lines = [lines[i] for i in np.linspace(0, len(lines) - 1, NAMED).round().astype(int)]
+    ax.legend(handles=lines, fontsize="small")
 
 
 def _short(ds: xr.Dataset, along: str) -> str:

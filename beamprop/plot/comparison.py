@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from .lengths import name_length
+
 _WIDTH = 7.1  # inches, two columns of a journal
 
 
@@ -99,13 +101,14 @@ def _maps(ds: xr.Dataset, axes: Sequence[Any]) -> None:
             vmax=limit * factor,
             rasterized=True,
         )
-        ax.set(xlabel="z [m]", aspect=aspect)
+        ax.set_aspect(aspect)
+        name_length(ax.xaxis, "z", ds.z.values)
         bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([0, 1.04, 1, 0.05]), orientation="horizontal")
         bar.ax.xaxis.set_ticks_position("top")
         bar.ax.xaxis.set_label_position("top")
         bar.ax.locator_params(nbins=4)
         bar.set_label(f"{title} [{scaled}]")
-    axes[0].set_ylabel("x [m]")
+    name_length(axes[0].yaxis, "x", ds.x.values)
     for ax in axes[1:]:
         ax.tick_params(labelleft=False)
 
@@ -129,7 +132,8 @@ def _errors(ds: xr.Dataset, ax: Any) -> None:
     else:
         ax.set_ylim(0, 1.1 * max(np.nanmax(values, initial=0.0), overall) or 1.0)
         ax.ticklabel_format(axis="y", scilimits=(-2, 3), useMathText=True)
-    ax.set(xlabel="z [m]", ylabel="relative L2 error")
+    ax.set_ylabel("relative L2 error")
+    name_length(ax.xaxis, "z", ds.z.values)
     ax.grid(True, color="0.9", lw=0.5)
 
 
@@ -140,7 +144,8 @@ def _widths(ds: xr.Dataset, ax: Any) -> None:
     factor, unit = next(((f, u) for f, u in ((1, "m"), (1e3, "mm")) if largest * f >= 1), (1e6, "µm"))
     _curve(ax, ds.z.values, values * factor, "C0")
     ax.axhline(0, color="0.5", lw=0.8)
-    ax.set(xlabel="z [m]", ylabel=f"width of b less a [{unit}]")
+    ax.set_ylabel(f"width of b less a [{unit}]")
+    name_length(ax.xaxis, "z", ds.z.values)
     ax.grid(True, color="0.9", lw=0.5)
     if not np.any(np.isfinite(values)):
         ax.text(0.5, 0.5, "half level not reached", transform=ax.transAxes, ha="center", va="center", color="0.4")

@@ -7,7 +7,8 @@ exact sum over the plane waves. A second contour of other parameters gives the e
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -58,24 +59,47 @@ class PlaneWaves(NamedTuple):
         return value
 
 
-def _both_contours(
-    s: SampledSlab, beam: Beam, plane: TransferToPlane, plan: StraightPlan
-) -> tuple[PlaneWaves, PlaneWaves]:
-    """The plane waves at the plane, on a contour and on a second one for the error; one response for both."""
+class _Rows(NamedTuple):
+    """Routes side by side, R rows: those of the first one's frequencies, then those of the second one's."""
+
+    k0: Any
+    branch: np.ndarray  #: the nearest one
+    path: np.ndarray
+    plane: TransferToPlane  #: (R, n) -> (R, n)
+    guided: bool  #: whether there is a slab on any way
+
+
+def _side_by_side(routes: Sequence[Route]) -> _Rows:
+    """All rows of routes with the same frequencies."""
+    k0, branch, path = (
+        np.concatenate(v) for v in zip(*((r.slab.k0, r.slab.nearest_branch, r.path) for r in routes), strict=True)
+    )
+    planes = [route.plane(route.slab, route.path) for route in routes]
+
+    def plane(k: np.ndarray) -> np.ndarray:
+        return np.concatenate([h(part) for h, part in zip(planes, np.split(k, len(planes)), strict=True)])
+
+    return _Rows(k0, branch, path, plane if len(routes) > 1 else planes[0], any(route.guided for route in routes))
+
+
+def _both_contours(rows: _Rows, beam: Beam, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves, np.ndarray]:
+    """The plane waves at the plane, on a contour and on a second one for the error, and H near kx = 0; one response for all."""
     contours = paths.straight_contour(plan), paths.straight_contour(plan.second_plan())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
-    h = plane(k)
-    right, left = sums.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, s.k0[:, None]), beam.centre)
+    near = [near_normal.around(np.asarray(plan.delta)[:, None] * ROUND)] if rows.guided else []
+    h, h_near = np.split(rows.plane(np.concatenate([k, *near], axis=-1)), [k.shape[-1]], axis=-1)
+    right, left = sums.amplitudes(Contour(k, weight), lambda k: beam.spectrum(k, rows.k0[:, None]), beam.centre)
     right, left, n = right * h, left * h, contours[0].k.shape[-1]
-    return PlaneWaves(contours[0], right[:, :n], left[:, :n]), PlaneWaves(contours[1], right[:, n:], left[:, n:])
+    first, second = (
+        PlaneWaves(c, right[:, v], left[:, v]) for c, v in zip(contours, (slice(n), slice(n, None)), strict=True)
+    )
+    return first, second, h_near
 
 
-def _plan(
-    s: SampledSlab, beam: Beam, path: np.ndarray, middle: np.ndarray, half: np.ndarray, rtol: float
-) -> StraightPlan:
-    lo, hi = beam.band(s.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
+def _plan(rows: _Rows, beam: Beam, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
+    lo, hi = beam.band(rows.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
     farthest = np.abs(middle - beam.centre) + half
-    extent = Extent(s.k0, s.nearest_branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), path)
+    extent = Extent(rows.k0, rows.branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), rows.path)
     return paths.plan_straight(extent, rtol)
 
 
@@ -87,39 +111,58 @@ MOST_TOGETHER, MOST_OF_A_FREQUENCY = 2**18, 20_000
 ROUND = 0.25
 
 
-def measured_together(route: Route, beam: Beam, rtol: float, level: float) -> tuple[Measures, np.ndarray]:
-    """Measures at all frequencies, (F,) each, and which of them can be trusted, (F,).
+#: Up to so many frequencies all routes are measured side by side, for the time goes around the numbers (experiments/benchmarks/point.py);
+#: more gain nothing by it.
+FEW = 8
 
-    None can of a beam whose spectrum is not entire, or where that many plane waves are needed that a bent contour is faster. The
-    frequencies are halved until their plane waves fit.
+
+def measured_together(
+    routes: Sequence[Route], beam: Beam, rtol: float, level: float
+) -> list[tuple[Measures, np.ndarray]]:
+    """Of each route measures at all frequencies, (F,) each, and which of them can be trusted, (F,).
+
+    None can of a beam whose spectrum is not entire, or where that many plane waves are needed that a bent contour is faster. Routes
+    are parted, and then frequencies halved, until their plane waves fit.
     """
-    s, count = route.slab, np.size(route.slab.k0)
-    unknown = np.full(count, np.nan)
-    nothing = Measures(unknown, unknown, unknown, unknown, uniform_budget(count, np.nan)), np.zeros(count, bool)
+    count = np.size(routes[0].slab.k0)
     if not beam.entire:
-        return nothing
-    plane = route.plane(s, route.path)
-    middle, half = landing(s, beam, plane, route.path)
-    plan = _plan(s, beam, route.path, middle, half, rtol)
+        return [_nothing(count)] * len(routes)
+    if len(routes) > 1 and count > FEW:
+        return _parted(routes, beam, rtol, level)
+    rows = _side_by_side(routes)
+    middle, half = landing(rows.k0, beam, rows.plane, rows.path)
+    plan = _plan(rows, beam, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
-    if count > 1 and count * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER:
-        (low, good_low), (high, good_high) = (
-            measured_together(_taken(route, rows), beam, rtol, level) for rows in np.array_split(np.arange(count), 2)
-        )
-        return measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high])
+    many = rows.k0.size * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER
+    if len(routes) > 1 and (many or size >= MOST_OF_A_FREQUENCY):
+        return _parted(routes, beam, rtol, level)
+    if count > 1 and many:
+        halves = [_taken(routes[0], part) for part in np.array_split(np.arange(count), 2)]
+        (low, good_low), (high, good_high) = _parted(halves, beam, rtol, level)
+        return [(measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high]))]
     if size >= MOST_OF_A_FREQUENCY:
-        return nothing
-    first, second = _both_contours(s, beam, plane, plan)
+        return [_nothing(count)]
+    first, second, h_near = _both_contours(rows, beam, plan)
     measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)
-    if route.guided:
-        good &= ~_backward(s, plan) & _calm_at_normal(plane, plan, rtol)
-    return measures._replace(centroid=measures.centroid + beam.centre), good
+    table = measures._replace(centroid=measures.centroid + beam.centre).table
+    for route, part in zip(routes, np.split(np.arange(rows.k0.size), len(routes)), strict=True):
+        if route.guided:
+            calm = near_normal.is_calm(h_near[part], max(0.01 * rtol, 1e-12))[:, 0]
+            good[part] &= calm & ~_backward(route.slab, StraightPlan(*(v[part] for v in plan)))
+    return [
+        (measures_of(v), g) for v, g in zip(np.split(table, len(routes), -1), np.split(good, len(routes)), strict=True)
+    ]
 
 
-def _calm_at_normal(plane: TransferToPlane, plan: StraightPlan, rtol: float) -> np.ndarray:
-    """Where no pole lies so near to kx = 0 that it counts half on either side, (F,)."""
-    near = plane(near_normal.around(np.asarray(plan.delta)[:, None] * ROUND))
-    return np.asarray(near_normal.is_calm(near, max(0.01 * rtol, 1e-12))[:, 0])
+def _nothing(count: int) -> tuple[Measures, np.ndarray]:
+    """No measures that can be trusted."""
+    unknown = np.full(count, np.nan)
+    return Measures(unknown, unknown, unknown, unknown, uniform_budget(count, np.nan)), np.zeros(count, bool)
+
+
+def _parted(routes: Sequence[Route], beam: Beam, rtol: float, level: float) -> list[tuple[Measures, np.ndarray]]:
+    """Routes one by one."""
+    return [measured for route in routes for measured in measured_together([route], beam, rtol, level)]
 
 
 def _taken(route: Route, rows: np.ndarray) -> Route:
@@ -168,14 +211,15 @@ def _measured(
     exact = first.evaluator()
     section = full_width(x, p, level, exact, inside, subsamples=0)
     peak = section.peak
-    size = np.where(inside, np.abs(p), 0.0)
+    size = np.abs(p)
     ends = np.argmax(inside, axis=-1), inside.shape[-1] - 1 - np.argmax(inside[:, ::-1], axis=-1)
     largest_end = np.max([np.take_along_axis(size, end[:, None], -1)[:, 0] for end in ends], axis=0)
     good = (largest_end < EDGE * level * peak) & (peak > 0) & np.isfinite(section.width)
     check = np.stack([section.left, section.right, section.position], axis=-1)
     with np.errstate(invalid="ignore", divide="ignore"):
         error = MARGIN * np.max(np.abs(exact(check) - second.evaluator()(check)), axis=-1) / peak
-        power = size**2
+        # each sample stands for a step, and those at the ends of the window for their share inside it
+        power = size**2 * np.clip((half - np.abs(x - middle)) / (x[:, 1:2] - x[:, :1]) + 0.5, 0.0, 1.0)
         centroid = (power * x).sum(-1) / power.sum(-1)
     error = np.nan_to_num(error, nan=1.0)
     good &= error <= rtol

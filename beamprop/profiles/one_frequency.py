@@ -34,7 +34,9 @@ def measured_alone(
     """`Measures` (1,) at one frequency, across the plane z; `way` is z and the distance along z."""
     z, path = way
     plane = np.array([z])
-    middle, half = (float(v[0]) for v in landing(s.stacked(), beam, lambda k: transfer(k[0], plane), np.array([path])))
+    middle, half = (
+        float(v[0]) for v in landing(np.array([s.k0]), beam, lambda k: transfer(k[0], plane), np.array([path]))
+    )
     choose.check_rays(s, beam, path, half)
     seen: list[_Rim] = []
 

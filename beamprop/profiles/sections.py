@@ -6,9 +6,9 @@ spectrum that is not entire) is measured again by itself (`one_frequency`), with
 
 from __future__ import annotations
 
-import functools
+from collections.abc import Sequence
 from dataclasses import is_dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,16 +22,26 @@ from .one_frequency import measured_alone
 from .routes import Measures, Route, far_face, measures_of, without
 
 
-def measure(route: Route, beam: Beam, rtol: float) -> Measures:
-    """Width, peak and centroid of the profiles across one plane per frequency."""
-    s = route.slab
+def measure(routes: Sequence[Route], beam: Beam, rtol: float) -> list[Measures]:
+    """Width, peak and centroid of the profiles across the planes of routes of the same frequencies."""
     level = _half_level(beam)
-    measures, good = measured_together(route, beam, rtol, level)
+    return [
+        _checked(route, beam, rtol, level, *measured)
+        for route, measured in zip(routes, measured_together(routes, beam, rtol, level), strict=True)
+    ]
+
+
+def _checked(route: Route, beam: Beam, rtol: float, level: float, measures: Measures, good: np.ndarray) -> Measures:
+    """The measures, those that cannot be trusted once more by themselves."""
+    if good.all():
+        return measures
     table = measures.table
+    # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
+    source = beam if route.guided or not is_dataclass(beam) else replace(beam, z0=0.0)
     for i in np.flatnonzero(~good):
-        slab = s.take(int(i))
+        slab = route.slab.take(int(i))
         way = float(route.z[i]), float(route.path[i])
-        table[:, i] = measured_alone(slab, beam, route.transfer(slab), way, rtol, level, route.guided).table[:, 0]
+        table[:, i] = measured_alone(slab, source, route.transfer(slab), way, rtol, level, route.guided).table[:, 0]
     return measures_of(table)
 
 
@@ -51,22 +61,13 @@ class Row(NamedTuple):
 
 
 def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, ErrorBudget]:
-    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst error."""
-    wavelengths = 2 * np.pi / s.k0
-    # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
-    launched = replace(beam, z0=0.0) if is_dataclass(beam) else beam
-
-    def free(distance: np.ndarray) -> Measures:
-        if not np.any(distance) and beam.entire:
-            return _as_launched(s, beam)
-        return measure(
-            Route(s.without_slab(), without, transfer_function.free, distance, distance, False), launched, rtol
-        )
-
-    launch = free(np.zeros(s.k0.shape))
-    near = launch if beam.z0 == 0 else free(np.full(s.k0.shape, -beam.z0))
-    face = np.full(s.k0.shape, s.thickness)
-    through = Route(
+    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst errors, (F,)."""
+    face, routes = np.full(s.k0.shape, s.thickness), {}
+    if not beam.entire:
+        routes["launch"] = _free(s, 0.0)
+    if beam.z0 != 0:
+        routes["near"] = _free(s, -beam.z0)
+    routes["far"] = Route(
         s,
         lambda slab, _: far_face(slab, beam.z0),
         lambda slab: transfer_function.through(slab, beam.z0),
@@ -74,16 +75,33 @@ def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) ->
         face - beam.z0,
         True,
     )
-    far = measure(through, beam, rtol)
-    air = free(2 * wavelengths if air_distance is None else np.full(s.k0.shape, air_distance))
+    routes["air"] = _free(s, air_distance or 4 * np.pi / s.k0)
+    measured = dict(zip(routes, measure([*routes.values()], beam, rtol), strict=True))
+    launch = measured.get("launch") or _as_launched(s, beam)
+    near, far, air = measured.get("near", launch), measured["far"], measured["air"]
     planes = launch, near, far, air
-    worst = functools.reduce(ErrorBudget.worse, (plane.budget for plane in planes))
     row = Row(launch.width, near.width, far.width, air.width, far.peak, far.centroid)
-    return row, np.stack([plane.crossings for plane in planes]), worst
+    return row, np.stack([plane.crossings for plane in planes]), _worst([plane.budget for plane in planes])
+
+
+def _free(s: SampledSlab, distance: Any) -> Route:
+    """Over a distance in the medium in front."""
+    way = np.full(s.k0.shape, distance)
+    return Route(s.without_slab(), without, transfer_function.free, way, way, False)
+
+
+def _worst(budgets: list[ErrorBudget]) -> ErrorBudget:
+    """At each frequency the budget with the largest total, (F,); an unknown total, nan, is no largest one."""
+    table = np.array(budgets)  # (planes, terms, F)
+    largest = np.argmax(np.nan_to_num(table.sum(axis=1), nan=-np.inf), axis=0)
+    return ErrorBudget(*np.take_along_axis(table, largest[None, None], 0)[0])
 
 
 def _as_launched(s: SampledSlab, beam: Beam) -> Measures:
     """The launch profile itself; |p| does not depend on the frequency."""
+    if (known := getattr(beam, "launch_width", None)) is not None:
+        width, peak, place, crossings = np.full((s.k0.size, 4), [known, np.nan, np.nan, 2.0]).T
+        return Measures(width, peak, place, crossings, uniform_budget(s.k0.size, 0.0))
     k0 = float(s.k0[0])
     x = beam.centre + beam.reach(1e-2) * 1.5 * np.linspace(-1, 1, 2001)
     p = beam.profile(x, k0)

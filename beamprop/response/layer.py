@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..media.fluids import FluidValues
 from ..media.values import LayerValues, SegmentValues
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
@@ -118,21 +119,27 @@ def normalised(state: State) -> State:
     return State(state.p * scale, state.q * scale, state.log + np.log(size))
 
 
-def at_frequencies(layers: LayerValues, rows: slice | np.ndarray) -> LayerValues:
-    """Some frequencies of a cell's values."""
-    mass, compliance, mobility, vanishing = (
-        v[:, rows] for v in (layers.mass, layers.compliance, layers.mobility, layers.vanishing)
-    )
-    return LayerValues(mass, compliance, mobility, layers.thickness, vanishing)
+def at_frequencies(layers: LayerValues, rows: slice | np.ndarray, single: bool = False) -> LayerValues:
+    """Some frequencies of a cell's values; a `single` one has the thickness (N,)."""
+    taken = LayerValues(*(v[:, rows] if v.ndim == 2 else v for v in layers))
+    return taken._replace(thickness=taken.thickness.reshape(-1)) if single else taken
 
 
-def lossy(layers: LayerValues, loss: float) -> LayerValues:
-    """Layers with more loss: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
+def with_loss(layers: LayerValues, loss: float) -> LayerValues:
+    """More loss in every layer: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
+    mass, compliance, mobility = layers[:3]
     return layers._replace(
-        mass=layers.mass + 1j * loss * np.abs(layers.mass),
-        compliance=layers.compliance + 1j * loss * np.abs(layers.compliance),
-        mobility=layers.mobility - 1j * loss * np.abs(layers.mobility),
+        mass=mass + 1j * loss * np.abs(mass),
+        compliance=compliance + 1j * loss * np.abs(compliance),
+        mobility=mobility - 1j * loss * np.abs(mobility),
     )
+
+
+def half_space_with_loss(f: FluidValues, loss: float) -> FluidValues:
+    """As `with_loss`; an infinite lateral density stays infinite."""
+    lateral = np.where(np.isfinite(f.rho_x), np.abs(f.rho_x), 0.0)
+    rho_z, compliance = f.rho_z + 1j * loss * np.abs(f.rho_z), 1 / f.bulk_modulus
+    return FluidValues(rho_z, f.rho_x + 1j * loss * lateral, 1 / (compliance + 1j * loss * np.abs(compliance)))
 
 
 def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:

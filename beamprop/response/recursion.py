@@ -31,8 +31,10 @@ def carry_back(
     segments: list[SegmentValues], omega: np.ndarray, kx: np.ndarray, state: State, z: np.ndarray
 ) -> tuple[State, list[Station]]:
     """Carry the outgoing state back through all segments."""
-    starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
-    owner = segment_of(starts[:-1], z) if z.size else z
+    starts, owner = np.zeros(len(segments) + 1), z
+    if z.size:
+        starts = np.cumsum([0.0, *(s.periods * s.layers.thickness.sum() for s in segments)])
+        owner = segment_of(starts[:-1], z)
     stations = []
     for index in reversed(range(len(segments))):
         segment, start = segments[index], float(starts[index])

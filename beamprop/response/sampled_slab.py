@@ -6,18 +6,19 @@ their branch points; what it is made of they do not know. `FluidSlab` is the one
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from ..conventions import outgoing_kz
+from ..conventions import branch_wavenumber, outgoing_kz
 from ..media.fluids import FluidValues
 from ..media.structures import Slab
-from ..media.values import SegmentValues, slab_values
+from ..media.values import SegmentValues, half_space_values, slab_values
 from . import walls
 from .cell import cell_matrix
 from .conditioning import SHIFT
-from .layer import at_frequencies, lossy, perturbed
+from .layer import at_frequencies, half_space_with_loss, perturbed, with_loss
 from .periods import bloch_phase
 from .slab import Response, dispersion, solve
 
@@ -143,7 +144,7 @@ class FluidSlab(NamedTuple):
     before: FluidValues
     after: FluidValues
     omega: np.ndarray  # (F, 1)
-    thickness: float
+    thickness: Any  # float, or (F,) of a slab for each frequency
     k0: Any  # float for one frequency, (F,) for several; complex where the frequency is
     branch_points: tuple[Any, ...]
 
@@ -175,8 +176,15 @@ class FluidSlab(NamedTuple):
     @property
     def lossless(self) -> bool:
         """Whether no property has an imaginary part."""
-        values = [v for seg in self.segments for v in (seg.layers.mass, seg.layers.compliance, seg.layers.mobility)]
-        return not any(np.any(v.imag) for v in (*values, *self.before, *self.after))
+        return not self.has_loss.any()
+
+    @property
+    def has_loss(self) -> np.ndarray:
+        """At which frequencies some property has an imaginary part, (F,)."""
+        values = [v for seg in self.segments for v in seg.layers[:3]]
+        return np.any(
+            [np.any(v.imag, axis=0) for v in (*values, *(v[None] for v in (*self.before, *self.after)))], axis=0
+        )
 
     @property
     def may_guide_backward(self) -> bool:
@@ -205,9 +213,9 @@ class FluidSlab(NamedTuple):
     def half_trace(self, kx: np.ndarray, loss: float = 0.0) -> np.ndarray:
         """Half the trace of one period's matrix."""
         layers = self.segments[0].layers
-        mass, compliance, mobility = (v.real for v in (layers.mass, layers.compliance, layers.mobility))
-        layers = lossy(layers._replace(mass=mass, compliance=compliance, mobility=mobility), loss)
-        m = cell_matrix(layers, self.omega, np.atleast_2d(kx) + 0j)
+        mass, compliance, mobility = (v.real for v in layers[:3])
+        layers = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+        m = cell_matrix(with_loss(layers, loss), self.omega, np.atleast_2d(kx) + 0j)
         trace = m.a + (m.e11 + m.e22) / 2
         with np.errstate(over="ignore"):
             return np.asarray(trace if m.growth is None else trace * np.exp(m.growth))
@@ -273,15 +281,8 @@ class FluidSlab(NamedTuple):
         """Every density and modulus with `loss` more."""
         if not loss:
             return self
-        segments = [values._replace(layers=lossy(values.layers, loss)) for values in self.segments]
-        before, after = (
-            FluidValues(
-                f.rho_z + 1j * loss * np.abs(f.rho_z),
-                f.rho_x + 1j * loss * np.where(np.isfinite(f.rho_x), np.abs(f.rho_x), 0.0),
-                1 / (1 / f.bulk_modulus + 1j * loss * np.abs(1 / f.bulk_modulus)),
-            )
-            for f in (self.before, self.after)
-        )
+        segments = [values._replace(layers=with_loss(values.layers, loss)) for values in self.segments]
+        before, after = (half_space_with_loss(values, loss) for values in (self.before, self.after))
         return self._replace(segments=segments, before=before, after=after)
 
     def up_to_wall(self) -> FluidSlab:
@@ -303,13 +304,14 @@ class FluidSlab(NamedTuple):
 
     def take(self, i: Any) -> FluidSlab:
         """Frequency i, or frequencies i."""
-        rows = np.atleast_1d(i)
-        segments = [seg._replace(layers=at_frequencies(seg.layers, rows)) for seg in self.segments]
+        rows, single = np.atleast_1d(i), np.ndim(i) == 0
+        segments = [seg._replace(layers=at_frequencies(seg.layers, rows, single)) for seg in self.segments]
         before, after = (FluidValues(*(v[rows] for v in f)) for f in (self.before, self.after))
         k0, branches = self.k0[rows], [b[rows] for b in self.branch_points]
-        if np.ndim(i) == 0:
-            k0, branches = k0[0].item(), [complex(b[0]) for b in branches]
-        return FluidSlab(segments, before, after, self.omega[rows], self.thickness, k0, tuple(branches))
+        thickness = self.thickness[rows] if np.ndim(self.thickness) else self.thickness
+        if single:
+            k0, branches, thickness = k0[0].item(), [complex(b[0]) for b in branches], float(np.ravel(thickness)[0])
+        return FluidSlab(segments, before, after, self.omega[rows], thickness, k0, tuple(branches))
 
 
 def sample(slab: Slab, frequency: complex, backward: bool = False) -> FluidSlab:
@@ -318,27 +320,26 @@ def sample(slab: Slab, frequency: complex, backward: bool = False) -> FluidSlab:
     return s._replace(k0=s.k0[0].item(), branch_points=tuple(complex(b[0]) for b in s.branch_points))
 
 
-def sample_all(slab: Slab, frequency: np.ndarray, backward: bool = False) -> FluidSlab:
-    """A slab at frequencies (F,); `backward` says whether the half-space behind may carry backward waves.
+def sample_all(slab: Slab | Sequence[Slab], frequency: np.ndarray, backward: bool = False) -> FluidSlab:
+    """A slab at frequencies (F,), or a slab of the same `layout` for each; `backward`: whether backward waves may run behind.
 
     At complex frequencies the answers are the analytic continuation of those at real ones, and `k0` is the complex wavenumber.
     """
-    branches = []
-    for name, fluid in (("before", slab.before), ("after", slab.after)):
-        k = fluid.wavenumber(frequency)
+    slabs = [slab] if isinstance(slab, Slab) else slab
+    omega, sides = 2 * np.pi * frequency, ("before", "after")
+    before, after = (half_space_values([getattr(s, side) for s in slabs], frequency) for side in sides)
+    branches = [branch_wavenumber(omega, values.rho_x, values.bulk_modulus) for values in (before, after)]
+    for name, k in zip(sides, branches, strict=True):
         # waves that decay within a wavelength run neither way: any contour passes their branch point alike
-        behind = (-k.real > k.imag) & (not backward)
-        bad = (k.real <= 0) | np.isinf(k) if name == "before" else behind
-        if np.any(bad):
-            raise ValueError(
-                f"{name}: expected a half-space that carries forward waves at {frequency[bad][0]} Hz, got {fluid!r}"
-            )
-        if np.all(np.isfinite(k)):
-            branches.append(k)
-    k0 = slab.before.wavenumber(frequency)
-    k0 = k0 if np.iscomplexobj(frequency) else k0.real
-    before, after, omega = slab.before.at(frequency), slab.after.at(frequency), 2 * np.pi * frequency[:, None]
-    return FluidSlab(slab_values(slab, frequency), before, after, omega, slab.thickness, k0, tuple(branches))
+        bad = (k.real <= 0) | np.isinf(k) if name == "before" else (-k.real > k.imag) & (not backward)
+        if bad.any():
+            i = int(np.argmax(bad))
+            expected = f"a half-space that carries forward waves at {frequency[i]} Hz"
+            raise ValueError(f"{name}: expected {expected}, got {getattr(slabs[min(i, len(slabs) - 1)], name)!r}")
+    k0 = branches[0] if np.iscomplexobj(frequency) else branches[0].real
+    thickness = slab.thickness if isinstance(slab, Slab) else np.array([s.thickness for s in slabs])
+    finite = tuple(k for k in branches if np.isfinite(k).all())
+    return FluidSlab(slab_values(slabs, frequency), before, after, omega[:, None], thickness, k0, finite)
 
 
 def on_the_right(branch: Any) -> Any:

@@ -123,10 +123,10 @@ def _wall(segments: list[SegmentValues], far: bool = False) -> np.ndarray:
     """
     wall, start = np.array(np.inf), 0.0
     for layers, periods in segments:
-        faces = start + np.concatenate([[0.0], np.cumsum(layers.thickness)])
-        face = faces[1:] if far else faces[:-1]
-        wall = np.minimum(wall, np.min(np.where(layers.vanishing, face[:, None], np.inf), axis=0))
-        start += periods * float(layers.thickness.sum())
+        d = layers.thickness.reshape(len(layers.thickness), -1)
+        faces = start + np.cumsum(np.concatenate([0 * d[:1], d]), axis=0)
+        wall = np.minimum(wall, np.min(np.where(layers.vanishing, faces[1:] if far else faces[:-1], np.inf), axis=0))
+        start = start + periods * layers.thickness.sum(axis=0)
     return wall[:, None]
 
 

@@ -73,7 +73,8 @@ def reflected_at_face(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
 
 def transmitted_at_face(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
     """Transmitted pressure at the far face, of a source on z0: (F, n)."""
-    return s.response(kx).t * launched(s, kx, z0)
+    t = s.response(kx).t
+    return t * launched(s, kx, z0) if z0 else t
 
 
 def over_distance(s: SampledSlab, kx: np.ndarray, distance: np.ndarray) -> np.ndarray:

@@ -31,6 +31,7 @@ class Beam(Protocol):
     * ``moved_to_origin()``: the same source about x = 0; without it, a source stays where it is.
     * ``spectrum_ends(k0)``: the interval of kx at whose ends the spectrum is cut off, whatever its value there.
     * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`.
+    * ``launch_width``: the width of its profile, by its own ``width_of``, where it is known exactly.
     * ``width_of``: "pressure" or "intensity", the definition of its width; "pressure" without it.
     """
 
@@ -119,7 +120,7 @@ class Tilted:
 
     def at_angle(self: _Source, angle: float) -> _Source:
         """The same envelope at another angle [degree]."""
-        return replace(self, angle=angle)  # type: ignore[type-var]
+        return self if angle == self.angle else replace(self, angle=angle)  # type: ignore[type-var]
 
 
 #: Exponentials that are held at a time: 32 MB.

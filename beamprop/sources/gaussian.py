@@ -61,9 +61,14 @@ class GaussianBeam(Tilted):
         """x0 [m]."""
         return self.x0
 
+    @property
+    def launch_width(self) -> float | None:
+        """The width along the launch plane, known for the launch form [m]."""
+        return self.fwhm if self.form == "launch" else None
+
     def moved_to_origin(self) -> GaussianBeam:
         """The same beam with x0 = 0."""
-        return replace(self, x0=0.0)
+        return replace(self, x0=0.0) if self.x0 else self
 
     @property
     def entire(self) -> bool:  # type: ignore[override]

@@ -200,7 +200,7 @@ def _values(given: Any, parameter: Parameter) -> list[Any]:
     """The values of an axis: a list, each as the parameter reads it, or a text of evenly spaced numbers."""
     if isinstance(given, str) and ":" in given:
         given = parameters.axis(given, "axis", parameters.units_of(parameter))
-        given = given if isinstance(given, list) else [given]
+        given = given.tolist() if parameters.is_several(given) else [given]
     if not isinstance(given, list) or not given:
         raise validate.refuse("axis", "a list, start:stop:count or start:stop:count:log", given)
     values = [parameters.read({"axis": v}, {"axis": parameter}, "axis")["axis"] for v in given]

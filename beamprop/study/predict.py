@@ -122,12 +122,12 @@ def _of_question(study: StudyFile) -> Cost:
     description = dict(study.point.description)
     given = questions.field_arguments(description) if study.name == "field" else questions.arguments(description)
     axes = {
-        n: v for n, v in given.items() if isinstance(v, list) and n in ("frequency", "angle", "z", "kx", "kx_over_k0")
+        n: v
+        for n, v in given.items()
+        if parameters.is_several(v) and n in ("frequency", "angle", "z", "kx", "kx_over_k0")
     }
     if study.name == "field":
-        memory.check_field(
-            tuple(len(given[n]) if isinstance(given[n], list) else 1 for n in ("frequency", "angle", "z", "x"))
-        )
+        memory.check_field(tuple(np.size(given[n]) for n in ("frequency", "angle", "z", "x")))
     longest = max(axes, key=lambda name: len(axes[name]), default=None)
     if longest is None or len(axes[longest]) <= MORE:
         seconds, size, variables = _measured(description)
@@ -172,7 +172,9 @@ def before(study: StudyFile) -> Cost | None:
     defaults = [name for name in missing.get(study.name, ()) if given[name] is None]
     if study.name == "scattering" and all(given[name] is None for name in questions.LATERAL):
         defaults = ["kx_over_k0"]
-    dims = tuple(name for name in given if name in parameters.AXES and isinstance(given[name], list)) + tuple(defaults)
+    dims = tuple(name for name in given if name in parameters.AXES and parameters.is_several(given[name])) + tuple(
+        defaults
+    )
     if wrong := list(not_drawn(study, {"": dims})):
         raise Mistakes(study.path, wrong)
     return None

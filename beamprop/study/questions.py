@@ -23,7 +23,10 @@ Description = Mapping[str, Any]
 
 def _axis(name: str) -> Parameter:
     def parse(value: Any, given: str) -> Axis:
-        parsed = isinstance(value, float) and math.isfinite(value)  # the question then says which magnitudes it can use
+        import numpy as np
+
+        # of what is parsed already the question says which magnitudes it can use
+        parsed = isinstance(value, np.ndarray) or (isinstance(value, float) and math.isfinite(value))
         return value if parsed else parameters.axis(value, given, AXES[name])
 
     return Parameter(None, parse, "An axis.", units=AXES[name])

@@ -95,8 +95,8 @@ def _own_modes(frequency: float) -> tuple[sampled_slab.SampledSlab, np.ndarray]:
     """A slab at a frequency, and the contour that `beam_width` takes for it."""
     batch = sampled_slab.sample_all(SLAB, np.array([frequency]))
     path = np.array([SLAB.thickness])
-    middle, half = stationary_phase.landing(batch, BEAM, routes.far_face(batch, BEAM.z0), path)
-    plan = many_frequencies._plan(batch, BEAM, path, middle, half, 1e-8)
+    rows = many_frequencies._Rows(batch.k0, batch.nearest_branch, path, routes.far_face(batch, BEAM.z0), guided=True)
+    plan = many_frequencies._plan(rows, BEAM, *stationary_phase.landing(rows.k0, BEAM, rows.plane, path), 1e-8)
     return sampled_slab.sample(SLAB, frequency), paths.straight_contour(plan).k[0]
 
 

@@ -1,0 +1,87 @@
+"""What a newcomer types first about layers of their own, and what they see."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from command import good
+
+import beamprop as bp
+from beamprop import parameters
+from beamprop.cli import main
+
+WATER = ["scattering", "--layer", "water 2mm", "--frequency", "1MHz", "--angle", "0"]
+
+
+def test_half_spaces_left_at_air_around_water():
+    """A hint in the command as in Python; none where it was said, at low frequencies or around steel."""
+    said = "warning: --background: air, for none was given"
+    assert said in good(*WATER).stderr
+    for more in (["--background", "air"], ["--background", "water"], ["--density", "1.25"], ["--frequency", "1kHz"]):
+        assert said not in good(*WATER, *more).stderr
+    assert said not in good("scattering", "--layer", "steel 2mm", *WATER[3:]).stderr
+
+
+@pytest.mark.parametrize(
+    ("typed", "nepers"), [("0.5dB/cm", 5.756462732), ("50dB/m", 5.756462732), ("3Np/cm", 300.0), ("1/4", 0.25)]
+)
+def test_attenuation_of_a_layer(typed, nepers):
+    """20 log10(e) dB are a neper."""
+    layer = parameters.layer(f"density=1000 speed=1480 attenuation={typed} 2mm")
+    assert complex(layer.fluid.wavenumber(1e6)).imag == pytest.approx(nepers, rel=1e-9)
+
+
+def test_an_unknown_unit_of_attenuation():
+    ran = CliRunner().invoke(main, ["scattering", "--layer", "density=1e3 speed=1480 attenuation=1dB/foot 2mm"])
+    assert ran.exit_code == 2
+    assert "attenuation of --layer: expected a number [Np/m], or such as 0.5dB/cm, got '1dB/foot'" in ran.stderr
+
+
+def test_speed_is_a_column(tmp_path):
+    """As it is a word of --layer."""
+    (tmp_path / "a.csv").write_text("Thickness (mm),Density,Speed [km/s]\n2,1000,1.48\n")
+    slab = bp.Slab.from_table(tmp_path / "a.csv")
+    assert slab.segments[0][0].layers == (bp.Layer(bp.Fluid.from_speed(1000.0, 1480.0), 0.002),)
+
+
+def test_the_field_at_one_place_is_a_number():
+    """Not the largest of one."""
+    options = ["--periods", "5", "--x", "0", "--z", "0.02", "--rtol", "1e-6"]
+    p = bp.field(bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.096, z0=-0.1), 2500.0, 0.0, 0.02, rtol=1e-6).p.item()
+    lines = good("field", *options).stdout.splitlines()
+    assert lines[1] == f"p {p:.6g} Pa"
+    assert not any("largest |p| " in line and "Pa" in line for line in lines)
+
+
+def test_a_legend_of_many_curves_fits():
+    """It names the first, the last and a few between; up to eight all are named, in matplotlib's colours."""
+    slab = bp.Slab.uniform(bp.AIR, 0.01)
+    for count, named in ((31, 8), (8, 8), (3, 3)):
+        ds = bp.scattering(slab, np.linspace(1e3, 2e3, count), angle=[0.0, 10.0])
+        ax = bp.plot.scattering(ds)
+        texts = [text.get_text() for text in ax.get_legend().get_texts()]
+        assert len(texts) == named
+        assert (texts[0], texts[-1]) == ("frequency 1000 Hz", "frequency 2000 Hz")
+        assert len({line.get_color() for line in ax.lines}) == count
+        ax.figure.clear()
+
+
+@pytest.mark.parametrize(("scale", "unit"), [(1.0, "m"), (1e-3, "mm"), (1e-6, "um")])
+def test_small_maps_are_told_in_small_units(scale, unit):
+    """On the same data, in m."""
+    at = np.linspace(0, scale, 11)
+    p = bp.field(bp.Slab.interface(), bp.GaussianBeam(0.1), 2500.0, at, at, rtol=1e-6)
+    ax = bp.plot.field(p)
+    assert (ax.get_xlabel(), ax.get_ylabel()) == (f"z [{unit}]", f"x [{unit}]")
+    ax.figure.canvas.draw()
+    assert "0.4" in [text.get_text() for text in ax.get_xticklabels()]
+    assert ax.get_xlim()[1] == pytest.approx(1.05 * scale)
+
+
+def test_a_map_is_no_table(tmp_path):
+    """`convert` names what was typed."""
+    source = tmp_path / "a.mat"
+    good("field", "--periods", "2", "--x", "0,0.1", "--z", "0,0.1", "--rtol", "1e-6", "--output", source)
+    ran = CliRunner().invoke(main, ["convert", str(source), str(tmp_path / "a.csv")])
+    assert ran.exit_code == 2
+    assert "Error: TARGET: expected one dimension, which a table has, got z 2, x 2: select one value in" in ran.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["a.mat"]
