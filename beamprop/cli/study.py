@@ -167,7 +167,7 @@ def check(**o: Any) -> None:
     click.echo(json.dumps(numbers) if o["as_json"] else "\n".join(cost.lines()))
 
 
-@command("init", example="beamprop init study.toml --example angles")
+@command("init", example="beamprop init angles.toml --example angles")
 @click.argument("file", type=click.Path(path_type=Path), default="study.toml")
 @option("--example", kind=words(*EXAMPLES), text="What to start from.", default="width", shown="width")
 def init(file: Path, example: str) -> None:
