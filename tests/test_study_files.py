@@ -187,6 +187,22 @@ def test_words_and_switches_are_axes(tmp_path):
     assert ds.transmissivity.sel(lossless="true", medium="lmmd-emt", frequency=3000.0) == expected
 
 
+def test_random_copies_are_those_of_python(tmp_path):
+    text = """
+    question = {name = "scattering", frequency = 2500, angle = 0}
+    slab = {periods = 5}
+    tolerance = {thickness = 0.02, density = 0.01, seed = 3}
+    sweep = {tolerance.sample = "0:3:4"}
+    """
+    ds = files.read(written(tmp_path, text)).answer(workers=1)
+    copies = bp.tolerance(bp.Slab(bp.lmmd_cell(), 5), 0.02, 0.01, 4, 3)
+    expected = [bp.scattering(copy, 2500.0, angle=0.0).t.item() for copy in copies]
+    np.testing.assert_array_equal(ds.t, expected)
+    assert len(set(expected)) == 4
+    said = wrong(tmp_path, text.replace("0.02", "0.5").replace("0.01", "0.1"))
+    assert said["tolerance.thickness"].startswith("expected a relative standard deviation")
+
+
 # --- predictions ------------------------------------------------------------------------------------------------
 
 MILLION = """

@@ -127,7 +127,9 @@ def _put_in(document: Mapping[str, Any], axes: Mapping[str, list[Any]], paths: M
 
 
 def _study(path: Path, document: dict[str, Any], axes: dict[str, list[Any]], paths: dict[str, str]) -> StudyFile:
-    description: dict[str, Any] = {key: document[key] for key in ("question", "slab", "beam") if key in document}
+    description: dict[str, Any] = {
+        key: document[key] for key in ("question", "slab", "beam", "tolerance") if key in document
+    }
     read = [within[key] for within, key in _paths(description)]
     digests = {file: hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in read}
     output = parameters.read(document.get("output", {}), OUTPUT, "output")

@@ -1,6 +1,7 @@
 """The questions, asked by plain values: what the command line and study files share.
 
-A description is a table of tables: `question` (its `name` and arguments), `slab` and `beam` with the names that `parameters` has for them.
+A description is a table of tables: `question` (its `name` and arguments), `slab` and `beam` with the names that
+`parameters` has for them, and perhaps `tolerance`.
 """
 
 from __future__ import annotations
@@ -69,6 +70,21 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         "strip_over_k0": Parameter(0.5, parameters.real, "Search up to this |Im kx| over k0."),
     },
 }
+
+
+def _number(value: Any, name: str) -> int:
+    from .. import validate
+
+    return validate.as_count(value, name, least=0)
+
+
+#: Errors of manufacture: a random copy of the slab takes its place.
+TOLERANCE: dict[str, Parameter] = {
+    "thickness": Parameter(0.0, parameters.real, "Relative standard deviation of each layer's thickness."),
+    "density": Parameter(0.0, parameters.real, "Relative standard deviation of each layer's density."),
+    "seed": Parameter(0, _number, "Of the random numbers."),
+    "sample": Parameter(0, _number, "Number of the copy, from 0."),
+}
 #: Questions about a beam.
 OF_BEAMS = ("field", "beam_width", "beam_measures")
 
@@ -93,10 +109,20 @@ def slab_of(description: Description) -> tuple[Slab, parameters.Design]:
     """The slab, and what defaults are taken by."""
     table = description.get("slab", {})
     slab = parameters.stack(table) if "stack" in table else parameters.slab(table)
+    if "tolerance" in description:
+        slab = _copy_of(slab, read(description["tolerance"], TOLERANCE, "tolerance"))
     around = {key: value for key, value in table.items() if key != "stack"} | (
         {"layers": ""} if "stack" in table else {}
     )
     return slab, parameters.design(around, slab.before, arguments(description)["frequency"])
+
+
+def _copy_of(slab: Slab, values: Mapping[str, Any]) -> Slab:
+    from ..media.tolerance import tolerance
+
+    with parameters.named("tolerance.thickness", "thickness"), parameters.named("tolerance.density", "density"):
+        copies = tolerance(slab, values["thickness"], values["density"], values["sample"] + 1, values["seed"])
+    return copies[values["sample"]]
 
 
 def arguments(description: Description) -> dict[str, Any]:

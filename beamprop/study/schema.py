@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 
 from .. import parameters, validate
 from ..parameters import Parameter
-from .questions import LATERAL, OF_BEAMS, QUESTIONS, lateral_of, slab_of
+from .questions import LATERAL, OF_BEAMS, QUESTIONS, TOLERANCE, lateral_of, slab_of
 
 #: Where answers go.
 OUTPUT: dict[str, Parameter] = {
@@ -85,11 +85,14 @@ def _document(name: str | None) -> type[BaseModel]:
         "question": (_model("Question", _QUESTION | own), ...),
         "slab": (_model("Slab", parameters.SLAB, **_layers(**around)), None),
         "beam": (_model("Beam", parameters.BEAM), None),
+        "tolerance": (_model("Tolerance", TOLERANCE), None),
         "sweep": (dict[str, Any], None),
         "output": (_model("Output", OUTPUT), None),
     }
     if name is not None and name not in OF_BEAMS:
         del fields["beam"]
+    if name == "bloch":
+        del fields["tolerance"]
     made: type[BaseModel] = create_model("Study", __config__=ConfigDict(extra="forbid"), **fields)
     return made
 
@@ -112,7 +115,7 @@ def mistakes(document: Mapping[str, Any]) -> list[Mistake]:
 def together(document: Mapping[str, Any], wrong: Iterable[Mistake]) -> Iterator[Mistake]:
     """What is wrong with the tables that have no mistake by themselves, when each is taken as a whole at the first point of the sweep."""
     bad = {str(mistake).partition(":")[0].partition(".")[0] for mistake in wrong}
-    if not bad & {"question", "slab", "sweep"}:
+    if not bad & {"question", "slab", "sweep", "tolerance"}:
         make = (
             (lambda: parameters.cell(document.get("slab", {})))
             if document["question"]["name"] == "bloch"
@@ -192,7 +195,12 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
         There is none.
     """
     name = document["question"].get("name") if isinstance(document.get("question"), Mapping) else None
-    tables = {"slab": parameters.SLAB, "beam": parameters.BEAM, "question": QUESTIONS.get(str(name), {})}
+    tables = {
+        "slab": parameters.SLAB,
+        "beam": parameters.BEAM,
+        "question": QUESTIONS.get(str(name), {}),
+        "tolerance": TOLERANCE,
+    }
     kinds = {
         "layer": parameters.LAYER,
         "stack": parameters.PART,
