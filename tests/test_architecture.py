@@ -53,7 +53,7 @@ ONLY = {
     "comparison": {"validate", "sources", "profiles", "io", "api"},
     "plot": {"validate"},
     "parameters": {"memory", "validate", "media", "sources"},
-    "study": {"memory", "validate", "progress", "io", "api"},
+    "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
 }
 
 

@@ -13,7 +13,9 @@ import beamprop as bp
 #: Public functions and classes by the names that users type; values and modules have no docstring of their own to hold one.
 PUBLIC = {name: getattr(bp, name) for name in bp.__all__ if callable(getattr(bp, name))}
 PUBLIC |= {f"fem.{name}": getattr(bp.fem, name) for name in ("field", "plan")}
-PUBLIC |= {f"plot.{name}": getattr(bp.plot, name) for name in ("bloch", "comparison", "field", "scattering", "width")}
+PUBLIC |= {
+    f"plot.{name}": getattr(bp.plot, name) for name in ("bloch", "comparison", "field", "scattering", "sweep", "width")
+}
 PUBLIC |= {
     "Fluid.from_speed": bp.Fluid.from_speed,
     "Membrane.drude": bp.Membrane.drude,

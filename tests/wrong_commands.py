@@ -270,7 +270,7 @@ WRONG = [
     ),
     (
         "help paint",
-        "COMMAND: expected one of beam_measures, beam_width, bloch, compare, convert, field, guided_modes, help, scattering, got 'paint'",
+        "COMMAND: expected one of beam_measures, beam_width, bloch, check, compare, convert, field, guided_modes, help, init, run, scattering, got 'paint'",
     ),
     ("help field extra", "Got unexpected extra argument (extra)..."),
     (

@@ -14,6 +14,7 @@ import click
 from .. import memory
 from ..parameters import is_several, named
 from .failures import attempt, in_options
+from .typed import save_study
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,6 +44,9 @@ def answer(
         warnings.simplefilter("always")
         ds = attempt(ask)
         files = attempt(lambda: _write(o, ds, draw, saved))
+        if o.get("save_study"):
+            attempt(lambda: save_study(o["save_study"]))
+            files.append(o["save_study"])
         if o["as_json"]:
             attempt(lambda: check_text(ds.nbytes / 16))
             printed = json.dumps(plain(ds.to_dict()), allow_nan=False)
@@ -63,6 +67,8 @@ def check_text(values: float) -> None:
 
 def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False) -> None:
     """Refuse, before the work, a file that cannot hold the answer (of several axes, or without positions), or that is read."""
+    if o.get("memory") is not None and o.get("save_study"):
+        raise click.UsageError("--save-study: expected to be left out beside --memory, which study files do not have")
     output = o["output"]
     for name in ("layers", "profile"):
         if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():

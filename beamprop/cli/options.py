@@ -17,6 +17,10 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 Parse = Callable[[Any, str], Any]
 
 
+#: Where a context keeps the texts that were typed: name of the parameter -> its texts.
+TYPED = "beamprop.typed"
+
+
 class Checked(click.ParamType):
     """Text that a function reads; what it refuses is wrong use, said of the option or argument as it is typed."""
 
@@ -29,6 +33,8 @@ class Checked(click.ParamType):
         if not isinstance(value, str):
             return value
         name = self.name if param is None else max(param.opts, key=len)
+        if ctx is not None and param is not None:
+            ctx.meta.setdefault(TYPED, {}).setdefault(param.name, []).append(value)
         return attempt(lambda: self.parse(value, name if name.startswith("--") else name.upper()))
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
@@ -220,6 +226,12 @@ def output(*, plot: bool = True) -> Decorator:
             kind=target(),
             group="Output",
             text="Write the dataset to this .nc, .zarr, .mat, .vti, .vtr or .csv (of one axis); a file or store of that name is replaced.",
+        ),
+        option(
+            "--save-study",
+            kind=target(".toml"),
+            group="Output",
+            text="Write this command as a study file, for beamprop run; a file of that name is replaced.",
         ),
         switch("--json", "as_json", text="Print the dataset as JSON.", group="Output"),
         switch("--quiet", "-q", text="Print nothing but warnings and what was asked for by --json.", group="Output"),

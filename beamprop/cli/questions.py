@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -17,21 +18,28 @@ from .options import BEAM, CELL, LENGTH, NAMES, POSITIVE, REAL, SLAB, axis, give
 if TYPE_CHECKING:
     import xarray as xr
 
-    from ..media.structures import Slab
-
 #: What a frequency is by default, for the help.
 ONE, BAND = "2500, the design frequency", "2000:3000:101, about the design frequency"
 
 
-def _slab(o: dict[str, Any]) -> tuple[Slab, parameters.Design]:
-    """The slab, and what defaults are taken by."""
-    table = given(o, parameters.SLAB)
-    slab = parameters.slab(table)
-    return slab, parameters.design(table, slab.before, o["frequency"])
+def described(name: str, o: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """What was typed, as the table of tables that studies ask by."""
+    from ..study.questions import OF_BEAMS, QUESTIONS
+
+    own = {key: o[key] for key in QUESTIONS[name] if o[key] is not None}
+    tables = {"question": {"name": name} | own, "slab": given(o, {k: p for k, p in parameters.SLAB.items() if k in o})}
+    return tables | ({"beam": given(o, parameters.BEAM)} if name in OF_BEAMS else {})
 
 
-def _frequency(o: dict[str, Any], design: parameters.Design) -> parameters.Axis:
-    return design.frequency if o["frequency"] is None else o["frequency"]
+def asking(name: str, o: dict[str, Any]) -> Callable[[], xr.Dataset]:
+    """The question of a command, to be asked."""
+
+    def ask() -> xr.Dataset:
+        from ..study import questions
+
+        return questions.ask(described(name, o), progress(o))
+
+    return ask
 
 
 def _needs_axis(o: dict[str, Any], *names: str) -> None:
@@ -58,20 +66,6 @@ def beam_width(**o: Any) -> None:
     The paper's Fig. 6.
     """
 
-    def ask() -> xr.Dataset:
-        from ..api.beam_width import beam_width as question
-
-        slab, design = _slab(o)
-        return question(
-            slab,
-            parameters.beam(given(o, parameters.BEAM), design.scale),
-            design.band if o["frequency"] is None else o["frequency"],
-            o["angle"],
-            o["rtol"],
-            o["air_distance"],
-            progress=progress(o),
-        )
-
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
 
@@ -81,7 +75,7 @@ def beam_width(**o: Any) -> None:
         _needs_axis(o, "frequency", "angle")
     check_output(o, {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]})
     names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
-    answer(o, ask, draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
+    answer(o, asking("beam_width", o), draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
 
 
 @command("beam_measures", example="beamprop beam_measures --angle 30 --lossless --periods 20 --window 1")
@@ -97,23 +91,9 @@ def beam_measures(**o: Any) -> None:
     Widths by three definitions, place, lateral shift, power and divergence.
     """
 
-    def ask() -> xr.Dataset:
-        from ..api.beam_measures import beam_measures as question
-
-        slab, design = _slab(o)
-        return question(
-            slab,
-            parameters.beam(given(o, parameters.BEAM), design.scale),
-            _frequency(o, design),
-            o["angle"],
-            o["rtol"],
-            window=o["window"],
-            progress=progress(o),
-        )
-
     check_output(o, {"frequency": o["frequency"], "angle": o["angle"], "side": []})
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
-    answer(o, ask, None, lambda ds: table(ds, names))
+    answer(o, asking("beam_measures", o), None, lambda ds: table(ds, names))
 
 
 @command(example="beamprop field --layer 'density=1000 speed=1480 2mm' --frequency 1MHz --plot beam.png")
@@ -151,30 +131,17 @@ def field(**o: Any) -> None:
         import numpy as np
 
         from ..api.field import field
-
-        slab, design = _slab(o)
-        z0 = design.launch if o["z0"] is None else o["z0"]
-        question = (
-            slab,
-            parameters.beam(given(o, parameters.BEAM) | {"z0": z0}, design.scale),
-            _frequency(o, design),
-            design.x if o["x"] is None else o["x"],
-            design.z(z0, slab.thickness) if o["z"] is None else o["z"],
-            o["angle"],
-            o["boundary"],
-            o["period"],
-            o["rtol"],
-        )
-        if o["as_json"]:
-            check_text(math.prod(np.size(a) for a in question[2:6] if a is not None) * len(variables))
-        if o["memory"] is None:
-            return field(*question, progress=progress(o), variables=variables)
         from ..api.save_field import save_field
+        from ..study.questions import field_arguments
 
+        question = field_arguments(described("field", o))
+        if o["as_json"]:
+            sizes = [np.size(question[n]) for n in ("frequency", "angle", "x", "z")]
+            check_text(math.prod(sizes) * len(variables))
+        if o["memory"] is None:
+            return field(**question, progress=progress(o))
         with parameters.named("output", "path"):
-            return save_field(
-                o["output"], *question, memory=o["memory"] * 2**20, progress=progress(o), variables=variables
-            )
+            return save_field(o["output"], **question, memory=o["memory"] * 2**20, progress=progress(o))
 
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
@@ -235,12 +202,6 @@ def scattering(**o: Any) -> None:
     """
     axes = {n: o[n] for n in LATERAL if o[n] is not None} or {"kx_over_k0": spaced(0.0, 5.0, 1001)}
 
-    def ask() -> xr.Dataset:
-        from ..api.scattering import scattering as question
-
-        slab, design = _slab(o)
-        return question(slab, _frequency(o, design), **axes)
-
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
 
@@ -251,7 +212,7 @@ def scattering(**o: Any) -> None:
     _needs_axis(o | axes, "frequency", *axes)
     check_output(o, {"frequency": o["frequency"]} | axes)
     names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
-    answer(o, ask, draw, lambda ds: table(ds, names))
+    answer(o, asking("scattering", o), draw, lambda ds: table(ds, names))
 
 
 @command(example="beamprop bloch --eta 1/20 --plot contour.png")
@@ -266,15 +227,6 @@ def bloch(**o: Any) -> None:
     """
     kx_over_k0 = spaced(-10.0, 10.0, 801) if o["kx_over_k0"] is None else o["kx_over_k0"]
 
-    def ask() -> xr.Dataset:
-        from ..api.bloch import bloch
-
-        table_of_cell = given(o, parameters.CELL)
-        cell, background = parameters.cell(table_of_cell)
-        design = parameters.design(table_of_cell, background, o["frequency"])
-        with parameters.named("layer", *(("cell",) if design.layered else ())):
-            return bloch(cell, _frequency(o, design), kx_over_k0=kx_over_k0, background=background)
-
     def draw(ds: xr.Dataset) -> Any:
         from .. import plot
 
@@ -287,7 +239,7 @@ def bloch(**o: Any) -> None:
     if o["plot"] and not is_several(kx_over_k0):
         raise click.UsageError("--plot: expected an axis for --kx-over-k0, got one value")
     check_output(o, {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
-    answer(o, ask, draw, summary)
+    answer(o, asking("bloch", o), draw, summary)
 
 
 @command("guided_modes", example="beamprop guided_modes --lossless --periods 20")
@@ -302,12 +254,6 @@ def guided_modes(**o: Any) -> None:
     Each with the direction of its energy.
     """
 
-    def ask() -> xr.Dataset:
-        from ..api.guided_modes import guided_modes as question
-
-        slab, design = _slab(o)
-        return question(slab, _frequency(o, design), o["kx_over_k0_max"], o["strip_over_k0"])
-
     def summary(ds: xr.Dataset) -> str:
         if ds.sizes["mode"] == 0:
             return "no guided mode in the strip"
@@ -315,7 +261,7 @@ def guided_modes(**o: Any) -> None:
         return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
 
     check_output(o, {"frequency": o["frequency"], "mode": []})
-    answer(o, ask, None, summary)
+    answer(o, asking("guided_modes", o), None, summary)
 
 
 COMMANDS = (field, beam_width, beam_measures, scattering, bloch, guided_modes)

@@ -4,7 +4,7 @@ Options of the command and tables in files share the names, defaults and texts t
 the key: ``ValueError("periods: expected ..., got ...")``. NumPy and the rooms are imported inside the functions, so that the command
 shows its help at once.
 
-values.py: one number, with its unit. tables.py: what a table may hold. media.py: `cell` and `slab`. sources.py: `beam`. scale.py: the
+values.py: one number, with its unit. tables.py: what a table may hold. models.py: fluids that change with frequency, by the name of a model. media.py: `cell` and `slab`. sources.py: `beam`. scale.py: the
 axes and lengths that are taken where none are given, by the wavelength.
 """
 
@@ -15,13 +15,19 @@ from typing import Any
 
 from .media import BACKGROUND as BACKGROUND
 from .media import CELL as CELL
+from .media import FLUID as FLUID
 from .media import LAYER as LAYER
 from .media import LAYERS as LAYERS
 from .media import LMMD as LMMD
+from .media import PART as PART
 from .media import SLAB as SLAB
 from .media import cell as cell
+from .media import fluid_of as fluid_of
 from .media import layer as layer
+from .media import layer_of as layer_of
+from .media import of_layers as of_layers
 from .media import slab as slab
+from .media import stack as stack
 from .scale import Design as Design
 from .scale import design as design
 from .sources import BEAM as BEAM
@@ -30,15 +36,19 @@ from .tables import Parameter as Parameter
 from .tables import known
 from .tables import named as named
 from .tables import read as read
+from .tables import units_of as units_of
 from .values import FREQUENCIES, LENGTHS, Axis, axis
+from .values import as_it_is as as_it_is
 from .values import count as count
 from .values import frequency as frequency
 from .values import is_several as is_several
 from .values import length as length
 from .values import number as number
 from .values import real as real
+from .values import size as size
 from .values import spaced as spaced
 from .values import switch as switch
+from .values import text as text
 
 #: What a question may be asked along, and the units that its numbers may have.
 AXES: dict[str, Mapping[str, int]] = {

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
+from .models import MODEL, of_model
 from .tables import Parameter, apart, named, read
 from .values import LENGTHS, as_it_is, count, frequency, length, number, real, switch
 
@@ -85,8 +86,13 @@ LAYER: dict[str, Parameter] = {
     "attenuation": Parameter(None, attenuation, "Beside a speed [Np/m], or 0.5dB/cm; the same at every frequency."),
     "density_x": Parameter(None, number, "Along the layer, where it differs [kg/m3]."),
     "areal_density": Parameter(None, number, "Of a membrane [kg/m2]."),
+    **MODEL,
     "thickness": Parameter(None, length, "[m]"),
 }
+#: What a half-space is described by, in place of a material's name.
+FLUID: dict[str, Parameter] = {name: p for name, p in LAYER.items() if name not in ("areal_density", "thickness")}
+#: What each part of a stack is described by.
+PART: dict[str, Parameter] = LMMD | LAYERS | {"periods": Parameter(1, count, "Periods of the part.")}
 _SHORT = {"speed": "sound_speed", "c": "sound_speed", "rho": "density", "modulus": "bulk_modulus"}
 
 
@@ -127,6 +133,31 @@ def slab(table: Mapping[str, Any]) -> Slab:
             return lmmd_emt_slab(layered, interface=values["medium"] == "lmmd-emt")
         fluid = standard_emt(period) if values["medium"] == "standard-emt" else before
         return Slab.uniform(fluid, layered.thickness, before, layered.after)
+
+
+def stack(table: Mapping[str, Any]) -> Slab:
+    """The slab of parts one behind another: `table["stack"]` lists tables of the names of `PART`, the rest is around them.
+
+    Examples
+    --------
+    >>> slab = stack({"background": "water", "stack": [{"layer": "steel 1mm", "periods": 2}, {"layer": "air 1cm"}]})
+    >>> [periods for _, periods in slab.segments]
+    [2, 1]
+    """
+    from ..media.structures import Slab
+
+    around = {key: value for key, value in table.items() if key != "stack"}
+    apart(around, (*LMMD, *LAYERS, "periods", "medium"), "stack")
+    values = read(around, SLAB, "slab")
+    before = _half_space(around, values, "background", "density", "sound_speed")
+    outside = {key: around[key] for key in BACKGROUND if key in around}
+    segments = []
+    for i, part in enumerate(table["stack"], 1):
+        with _of(f"stack {i}"):
+            described = read(part, PART, "stack")
+            given = {key: value for key, value in part.items() if key != "periods"}
+            segments.append((cell(given | outside)[0], described["periods"]))
+    return Slab.stack(segments, before, _behind(around, values, before))
 
 
 def _cell(table: Mapping[str, Any], values: Mapping[str, Any]) -> tuple[Cell, Fluid]:
@@ -183,17 +214,48 @@ def layer(given: Any, name: str = "layer") -> Layer | Membrane:
     >>> layer({"areal_density": 0.3})
     Membrane(areal_density=(0.3+0j), active=False)
     """
-    from ..media.structures import Layer, Membrane
-
     table = _described(given, name) if isinstance(given, str) else given
     with _of(name):
-        values = {key: value for key, value in read(table, LAYER, "layer").items() if value is not None}
-        if set(values) == {"areal_density"}:
-            return Membrane(values["areal_density"])
-        thickness = values.pop("thickness", None)
-        if thickness is not None and frozenset(values) in _FLUIDS:
-            return Layer(_fluid(values), thickness)
-    raise _refused(given, name)
+        made = layer_of(table)
+    if made is None:
+        raise _refused(given, name)
+    return made
+
+
+def layer_of(table: Mapping[str, Any]) -> Layer | Membrane | None:
+    """A layer or membrane from a table with the names of `LAYER`; nothing if these do not make one. Errors name the table's keys."""
+    from ..media.structures import Layer
+
+    values = _given(table, LAYER, "layer")
+    of_membrane = "areal_density" in values and ("model" in values or set(values) == {"areal_density"})
+    if of_membrane:
+        apart(values, ("thickness",), "areal_density")
+        return of_model({"model": "mass-law"} | values)  # type: ignore[return-value]
+    thickness = values.pop("thickness", None)
+    if thickness is None or ("model" not in values and frozenset(values) not in _FLUIDS):
+        return None
+    return Layer(_fluid(values), thickness)
+
+
+def fluid_of(table: Mapping[str, Any]) -> Fluid:
+    """A fluid from a table with the names of `FLUID`.
+
+    Examples
+    --------
+    >>> fluid_of({"density": 1000, "sound_speed": "1480"})
+    Fluid(density=1000, bulk_modulus=2.1904e+09)
+    """
+    values = _given(table, FLUID, "fluid")
+    if "model" not in values and frozenset(values) not in _FLUIDS:
+        raise ValueError(
+            f"material: expected a name, or density and sound_speed or bulk_modulus, got {', '.join(values) or 'nothing'}"
+        )
+    made: Fluid = _fluid(values)
+    return made
+
+
+def _given(table: Mapping[str, Any], parameters: Mapping[str, Parameter], what: str) -> dict[str, Any]:
+    return {key: value for key, value in read(table, parameters, what).items() if value is not None}
 
 
 @contextmanager
@@ -216,9 +278,11 @@ _FLUIDS = {
 }
 
 
-def _fluid(values: Mapping[str, Any]) -> Fluid:
+def _fluid(values: Mapping[str, Any]) -> Any:
     from ..media.fluids import Fluid
 
+    if "model" in values:
+        return of_model(values)
     if "material" in values:
         return _material(values["material"], "material")
     return Fluid.from_speed(**values) if "sound_speed" in values else Fluid(**values)
@@ -227,6 +291,8 @@ def _fluid(values: Mapping[str, Any]) -> Fluid:
 def _material(value: Any, key: str) -> Fluid:
     from ..media.materials import material
 
+    if isinstance(value, Mapping):
+        return fluid_of(value)
     with named(key, "name"):
         return material(value)
 

@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
+from .values import UNITS
+
 
 class Parameter(NamedTuple):
     """A key of a table: its default, the function that turns a plain value into it, and its meaning."""
@@ -16,6 +18,7 @@ class Parameter(NamedTuple):
     words: tuple[str, ...] = ()  #: the words that it may be, if it is a word
     shown: str = ""  #: the default as it is shown, where that is not its own text
     scaled: bool = False  #: whether the default is that of the paper's wavelength, and goes with it
+    units: Mapping[str, int] = {}  #: those of its numbers, where `parse` does not tell
 
 
 def read(
@@ -84,3 +87,8 @@ def named(key: str, *names: str) -> Iterator[None]:
         if not colon or name not in names:
             raise
         raise ValueError(f"{key}: {said}") from None
+
+
+def units_of(parameter: Parameter) -> Mapping[str, int]:
+    """The units that numbers of a parameter may have."""
+    return parameter.units or UNITS.get(parameter.parse, {})

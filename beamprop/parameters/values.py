@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -12,6 +13,7 @@ Axis: TypeAlias = "float | np.ndarray"
 #: Units as powers of ten.
 LENGTHS = {"m": 0, "km": 3, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 FREQUENCIES = {"Hz": 0, "kHz": 3, "MHz": 6, "GHz": 9}
+BYTES = {"B": 0, "kB": 3, "MB": 6, "GB": 9, "TB": 12}
 
 T = TypeVar("T", float, complex)
 
@@ -108,35 +110,70 @@ def as_it_is(value: Any, name: str) -> Any:
     return value
 
 
+#: The units of what a function reads.
+UNITS: dict[Callable[[Any, str], Any], Mapping[str, int]] = {length: LENGTHS, frequency: FREQUENCIES}
+
+
+def text(value: Any, name: str) -> str:
+    """A text."""
+    from .. import validate
+
+    if not isinstance(value, str) or not value:
+        raise validate.refuse(name, "a text", value)
+    return value
+
+
+def size(value: Any, name: str) -> float:
+    """A number of bytes above zero, as text also with a unit: 500MB, 2GB."""
+    from .. import validate
+
+    return validate.as_number(real(value, name, BYTES, "a size such as 500MB or 2GB"), name, positive=True)
+
+
 def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
-    """A number, or several as an array; also as text: a number, numbers with commas between, or start:stop:count.
+    """A number, or several as an array; also as text: a number, numbers with commas between, start:stop:count, or
+    start:stop:count:log for even ratios.
 
     Examples
     --------
     >>> axis("2000:3000:3", "frequency")
     array([2000., 2500., 3000.])
+    >>> axis("1kHz:100kHz:3:log", "frequency", FREQUENCIES)
+    array([  1000.,  10000., 100000.])
     """
     import numpy as np
 
     from .. import validate
 
+    if isinstance(value, list) and any(isinstance(v, str) for v in value):
+        return np.array([real(v, name, units) for v in value])
     if not isinstance(value, str):
         numbers = validate.axis(value, name)
         return numbers if numbers.ndim else float(numbers)
+    even = value.removesuffix(":log")
     try:
         if ":" not in value:
             several = [_read(v, float, units or {}) for v in value.split(",")]
             return several[0] if len(several) == 1 else np.array(several)
-        first, last, many = value.split(":")
+        first, last, many = even.split(":")
         start, stop, size = _read(first, float, units or {}), _read(last, float, units or {}), int(many)
-        if size < 1:
+        if size < 1 or (even != value and not 0 < start * stop < math.inf):
             raise ValueError
     except ValueError:
         raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
     from .. import memory
 
     memory.check(name, 32.0 * size, f"the {size} numbers of {value!r}", "take fewer")
-    return spaced(start, stop, size)
+    return spaced(start, stop, size) if even == value else spaced_by_ratio(start, stop, size)
+
+
+def spaced_by_ratio(start: float, stop: float, size: int) -> np.ndarray:
+    """Numbers of one sign with even ratios, both ends exact."""
+    import numpy as np
+
+    if size == 1:
+        return np.array([start])
+    return np.geomspace(start, stop, size)
 
 
 def spaced(start: float, stop: float, size: int) -> np.ndarray:

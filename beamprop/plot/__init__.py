@@ -268,3 +268,38 @@ def width(ds: xr.Dataset, ax: Any = None, label: str | None = None) -> Any:
     ax.set(xlabel=_title_of(ds[along]), ylabel="full width at half maximum [cm]", ylim=(0, None))
     ax.legend(fontsize="small")
     return ax
+
+
+def sweep(ds: xr.Dataset, quantity: str | None = None, log: bool = False, ax: Any = None) -> Any:
+    """A quantity of a sweep: a curve on one axis, a map on two.
+
+    Parameters
+    ----------
+    ds : Dataset
+        From `beamprop.sweep`.
+    quantity : str, optional
+        The first variable; of complex ones the magnitude is drawn.
+    log : bool
+        On a logarithmic scale.
+    ax : Axes, optional
+
+    Examples
+    --------
+    >>> slab = bp.Slab(bp.lmmd_cell(), periods=20)
+    >>> ds = bp.sweep(lambda angle: bp.scattering(slab, 2500.0, angle=angle), {"angle": [0.0, 30.0, 60.0]}, workers=1)
+    >>> ax = bp.plot.sweep(ds, "transmissivity")
+    """
+    name = next(iter(ds.data_vars)) if quantity is None else quantity
+    _need(ds, str(name))
+    v = ds[name].squeeze()
+    if v.ndim not in (1, 2):
+        raise ValueError(f"ds: expected {name} on one or two axes, got {', '.join(map(str, v.dims)) or 'one value'}")
+    values = abs(v).assign_attrs(v.attrs) if v.dtype.kind == "c" else v
+    ax = _axes(ax, (5.2, 3.6))
+    if v.ndim == 1:
+        values.plot(ax=ax, marker=".", yscale="log" if log else None)  # type: ignore[call-arg]
+    else:
+        from matplotlib.colors import LogNorm
+
+        values.plot(ax=ax, norm=LogNorm() if log else None)  # type: ignore[call-arg]
+    return ax
