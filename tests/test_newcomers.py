@@ -85,3 +85,20 @@ def test_a_map_is_no_table(tmp_path):
     assert ran.exit_code == 2
     assert "Error: TARGET: expected one dimension, which a table has, got z 2, x 2: select one value in" in ran.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["a.mat"]
+
+
+def test_warnings_are_printed_where_a_question_is_refused():
+    """A warning may tell why: here that no unit of the angles was named."""
+    ran = CliRunner().invoke(
+        main, ["beam_width", "--layer", "density=1000 bulk_modulus=343 2mm", "--frequency", "1e6,0"]
+    )
+    assert ran.exit_code == 2
+    lines = ran.stderr.splitlines()
+    assert any(line.startswith("warning: ") and "bulk_modulus" in line for line in lines)
+    assert lines[-1].startswith("Error: --frequency: ")
+
+
+def test_measures_and_planes_have_their_units_and_axes():
+    assert "power [1]; divergence [degree]\n" in good("beam_measures", "--lossless", "--periods", "5").stdout
+    said = good("field", "--periods", "5", "--x=-.2:.2:11", "--z=0:1:5", "--variables", "p,power_through").stdout
+    assert "p on (z 5, x 11)\npower_through on (z 5)\n" in said

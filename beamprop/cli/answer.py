@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import sys
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,8 +41,7 @@ def answer(
     saved: bool = False,
 ) -> xr.Dataset:
     """Ask, draw, write (unless asking has `saved`), print; the dataset. A ValueError is wrong use: exit 2."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with _warnings_on_lines():
         ds = attempt(ask)
         files = attempt(lambda: _write(o, ds, draw, saved))
         if o.get("save_study"):
@@ -52,12 +52,22 @@ def answer(
             printed = json.dumps(plain(ds.to_dict()), allow_nan=False)
         else:
             printed = "\n".join([*_where(ds), summary(ds), *(f"wrote {path}" for path in files)])
-    for w in caught:
-        if not issubclass(w.category, DeprecationWarning):
-            click.echo(f"warning: {in_options(str(w.message))}", err=True)
     if o["as_json"] or not o["quiet"]:
         click.echo(printed)
     return ds
+
+
+@contextlib.contextmanager
+def _warnings_on_lines() -> Iterator[None]:
+    """Print warnings in the end, each on a line of its own; also where the question is refused, for they may tell why."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            yield
+        finally:
+            for w in caught:
+                if not issubclass(w.category, DeprecationWarning):
+                    click.echo(f"warning: {in_options(str(w.message))}", err=True)
 
 
 def check_text(values: float) -> None:
@@ -141,6 +151,12 @@ def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0) -> str:
     return "\n\n".join(
         f"{n}\n" + _text(ds[n].to_series().unstack(dims[-1], sort=False), ROWS_EACH, COLUMNS) for n in names
     )
+
+
+def units(ds: xr.Dataset, names: tuple[str, ...]) -> str:
+    """The units of variables, a line."""
+    of = {unit: [n for n in names if ds[n].attrs["units"] == unit] for unit in (ds[n].attrs["units"] for n in names)}
+    return "; ".join(f"{', '.join(members)} [{unit}]" for unit, members in of.items())
 
 
 def _text(frame: Any, rows: int, columns: int) -> str:

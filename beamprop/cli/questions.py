@@ -10,7 +10,7 @@ import click
 
 from .. import parameters
 from ..parameters import is_several, spaced
-from .answer import answer, check_output, check_text, progress, table
+from .answer import answer, check_output, check_text, progress, table, units
 from .commands import command
 from .failures import typed
 from .options import BEAM, CELL, LENGTH, NAMES, POSITIVE, REAL, SLAB, axis, given, launch, option, output, switch, words
@@ -93,7 +93,7 @@ def beam_measures(**o: Any) -> None:
 
     check_output(o, {"frequency": o["frequency"], "angle": o["angle"], "side": []})
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
-    answer(o, asking("beam_measures", o), None, lambda ds: table(ds, names))
+    answer(o, asking("beam_measures", o), None, lambda ds: f"{units(ds, names)}\n{table(ds, names)}")
 
 
 @command(example="beamprop field --layer 'density=1000 speed=1480 2mm' --frequency 1MHz --plot beam.png")
@@ -166,7 +166,11 @@ def field(**o: Any) -> None:
 
 def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
     sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
-    lines = [f"{', '.join(variables)} on ({sizes})"] if sizes else []
+    on_planes = [n for n in variables if n == "power_through"]
+    on_points = [n for n in variables if n not in on_planes]
+    sizes_of_planes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items() if d != "x")
+    parts = ((on_points, sizes), (on_planes, sizes_of_planes))
+    lines = [f"{', '.join(names)} on ({axes})" for names, axes in parts if names and axes]
     for name, v in ds.data_vars.items():
         if not str(name).startswith("error_estimate"):
             said = f"largest |{name}| {float(abs(v).max()):.6g}" if sizes else f"{name} {v.item():.6g}"
