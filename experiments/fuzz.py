@@ -38,6 +38,7 @@ DOCUMENTED = {
     "scattering": {"energy_transmission", "absorption"},
     "guided_modes": {"kx", "kx_over_k0", "residual"},
     "to_grid": {"p"},
+    "sweep": {"energy_transmission", "absorption"},  # its question asks for them
 }
 #: How NumPy's and SciPy's own warnings begin.
 LEAKS = re.compile(

@@ -37,6 +37,18 @@ def draw_variables(rng: Any) -> Any:
     )
 
 
+def spectrum(kx_over_k0: Any, eta: Any = 1 / 60) -> Any:
+    """A question of a sweep."""
+    return bp.scattering(bp.Slab(bp.lmmd_cell(eta=eta), 5), 2500.0, kx_over_k0=kx_over_k0)
+
+
+def draw_axes(rng: Any) -> Any:
+    """Axes of a sweep of few points, now and then of names that the question does not have."""
+    name = pick(rng, ("kx_over_k0", "kx_over_k0", "eta", "frequency"))
+    axes = {"kx_over_k0": rng.uniform(0, 5, 3), name: rng.uniform(0.01, 0.1, 2)}
+    return pick(rng, (axes, axes, {}, [("kx_over_k0", [0.0])]))
+
+
 FREQUENCY, X, Z, ANGLE = draw_axis(500, 5000), draw_axis(-2, 2), draw_axis(0, 1), draw_axis(-80, 80)
 #: Of questions that take longer.
 FEW, ONE_OR_TWO = draw_axis(1000, 3000, 3), draw_axis(-60, 60, 2)
@@ -183,6 +195,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
             "period": lambda r: 1.37,
         },
         {"order": lambda r: 1, "elements_x": lambda r: 9, "memory_limit": lambda r: 1e8},
+    ),
+    "sweep": (
+        bp.sweep,
+        {"question": lambda r: spectrum, "axes": draw_axes},
+        {"progress": lambda r: False, "workers": lambda r: 1},
     ),
     **MEDIA_CALLS,
 }

@@ -107,7 +107,9 @@ def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
 def test_what_is_not_finite_is_refused(monkeypatch):
     """A plane wave that meets a pole: no NaN leaves."""
     monkeypatch.setattr(
-        scattered.transfer_function, "through", lambda s, z0: lambda k, z: np.full((z.size, k.size), np.inf + 0j)
+        scattered.transfer_function,
+        "through",
+        lambda s, z0, quantity="p": lambda k, z: np.full((z.size, k.size), np.inf + 0j),
     )
     asked = record(bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.096), "periodic", 1.0)
     with pytest.raises(ValueError, match="the field is not finite"):
