@@ -49,7 +49,8 @@ def sweep(
     ----------
     question : function
         Of the axes' names; returns a Dataset of numbers, with the same variables, dimensions and coordinates at every point. Lambdas and
-        functions of the running script are welcome. What it reduces (a map to its width, say) is never kept.
+        functions of the running script are welcome. What it reduces (a map to its width, say) is never kept. One that asks for
+        `beam_width` is called twice at a point: up to there, and again when the widths at many points have been computed at once.
     axes : dict
         Name -> 1-D array of different numbers or strings; names and their order are those of the result's first dimensions.
     store : path, optional
