@@ -82,7 +82,17 @@ def together(questions: Sequence[Callable[[], Any]]) -> list[Any]:
     >>> [round(answer, 5) for answer in together([partial(width, 1 / 60), partial(width, 1 / 50)])]
     [0.09665, 0.09688]
     """
-    asked = [_Asked(question) for question in questions]
+    return _answers([_Asked(question) for question in questions])
+
+
+def asks_for_widths(question: Callable[[], Any]) -> tuple[Any, bool]:
+    """The answer to a question or its error, and whether it asked for widths that are computed in one go with those of others."""
+    asked = _Asked(question)
+    (answer,) = _answers([asked])
+    return answer, bool(asked.points)
+
+
+def _answers(asked: list[_Asked]) -> list[Any]:
     answers: list[Any] = [_Unknown] * len(asked)
     waiting = list(range(len(asked)))
     while waiting:

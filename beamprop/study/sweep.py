@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
+from ..api.together import asks_for_widths, together
 from ..io import datasets
 from ..progress import Progress, Steps
 from . import engine as engines
@@ -23,7 +24,7 @@ from .arrays import InMemory, specs
 from .axes import Question, Study, study_of
 from .blocks import Grid, grid_of, points_of_a_block
 from .run import Run, answer_all
-from .work import DONE, FAILED, Answer, Schema, Task, alone, answer_of, schema_of
+from .work import DONE, FAILED, TOGETHER, Answer, Schema, Task, alone, asking, schema_of
 
 #: Points are measured for so long [s], the first aside, which pays for what is loaded once, unless it takes longer than that can; and at so
 #: many places at most.
@@ -204,25 +205,41 @@ def sample_of(study: Study) -> Sample:
     ValueError
         None of them can be answered, or the answer is not one that a study can keep.
     """
-    known: dict[int, Answer] = {}
+    answers: dict[int, Answer] = {}
+    shared: set[int] = set()
     seconds: list[float] = []
     schema = None
     places = np.unique(np.linspace(0, study.size - 1, PLACES).astype(int))
     with alone() as caught:
         for place, point in zip(places.tolist(), study.points(places), strict=True):
             start = time.perf_counter()
-            known[place] = answer = answer_of(study.question, dict(zip(study.axes, point, strict=True)), caught)
+            answer, shares = asks_for_widths(asking(study.question, tuple(study.axes), point, caught))
             seconds.append(time.perf_counter() - start)
+            answers[place] = answer
+            if shares:
+                shared.add(place)
             if schema is None and answer.dataset is not None:
                 schema = schema_of(answer.dataset, set(study.axes))
             if schema is not None and (sum(seconds[1:]) > MEASURED or seconds[0] > LOADED):
                 break
     if schema is None:
-        message = next(iter(known.values())).message
+        message = next(iter(answers.values())).message
         raise ValueError(
-            f"question: expected an answer at one of {len(known)} points, got none, at the first: {message}"
+            f"question: expected an answer at one of {len(answers)} points, got none, at the first: {message}"
         )
-    return Sample(schema, known, float(np.median(seconds[1:] or seconds)))
+    # widths that share their work are computed again with their block, so that they do not depend on what was measured here
+    known = {place: answer for place, answer in answers.items() if place not in shared}
+    each = _seconds_together(study) if len(shared) == len(answers) and seconds[-1] < LOADED else None
+    return Sample(schema, known, float(np.median(seconds[1:] or seconds)) if each is None else each)
+
+
+def _seconds_together(study: Study) -> float:
+    """Time of a point whose work is shared with neighbours."""
+    flat = np.arange(min(study.size, TOGETHER // 4))
+    with alone() as caught:
+        start = time.perf_counter()
+        together([asking(study.question, tuple(study.axes), point, caught) for point in study.points(flat)])
+        return (time.perf_counter() - start) / flat.size
 
 
 def _answer(study: Study, kept: InMemory | stores.Store, sample: Sample, blocks: range, way: _Way) -> None:

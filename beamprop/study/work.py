@@ -7,7 +7,7 @@ import functools
 import pickle
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -106,10 +106,16 @@ def _in_turn(task: Task, question: Any, caught: list[warnings.WarningMessage]) -
     for start in range(0, len(task.points), TOGETHER):
         block = range(start, min(start + TOGETHER, len(task.points)))
         new = [k for k in block if k not in task.known]
-        arguments = [dict(zip(task.names, task.points[k], strict=True)) for k in new]
-        answered = together([functools.partial(answer_of, question, values, caught) for values in arguments])
+        answered = together([asking(question, task.names, task.points[k], caught) for k in new])
         known = task.known | dict(zip(new, answered, strict=True))
         yield from ((k, known[k]) for k in block)
+
+
+def asking(
+    question: Any, names: tuple[str, ...], point: tuple[Any, ...], caught: list[warnings.WarningMessage]
+) -> Callable[[], Answer]:
+    """The question at a point, to be asked."""
+    return functools.partial(answer_of, question, dict(zip(names, point, strict=True)), caught)
 
 
 def empty_result(schema: Schema, count: int, status: int, message: str) -> Result:
