@@ -147,6 +147,10 @@ WIDE = bp.GaussianBeam(9.6, z0=-0.1)
             lambda: bp.field(bp.Slab(CELL, 20), WIDE, F, np.linspace(-1.4, 1.4, 101), 0.1),
             "^fwhm: 9.6 m is 70 wavelengths, and x spans 2.8 m: is it in metres",
         ),
+        (
+            lambda: bp.beam_width(bp.Slab(CELL, 450), WIDE, F),
+            r"^fwhm: 9.6 m is 70 wavelengths, and the slab is 1\.\d+ m thick: is",
+        ),
     ],
 )
 @pytest.mark.filterwarnings("ignore::RuntimeWarning", "ignore::beamprop.AccuracyWarning")

@@ -17,7 +17,7 @@ from ..profiles import sections
 from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
 from ..sources.base import Beam
-from . import checks
+from . import checks, hints
 from .together import Point, widths_known
 from .widths_of import ROWS_AT_A_TIME
 
@@ -74,6 +74,7 @@ def beam_width(
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
     flat, angles = beams.flat
+    hints.warn_of_width_beside(slab, beam, flat)
     memory.check_table(flat.size * angles.size, 60.0)
     table, most, worst = _table(slab, beams, air_distance, progress)
     table["centroid_out"] += beams.origin

@@ -34,9 +34,21 @@ def _is_like_water(fluid: Fluid, frequency: np.ndarray) -> bool:
 
 def warn_of_width(slab: Slab, beam: Beam, frequency: np.ndarray, x: np.ndarray) -> None:
     """A hint that a beam of many wavelengths does not fit into the grid that its field is asked on."""
-    fwhm, span = float(np.max(getattr(beam, "fwhm", 0.0))), float(np.ptp(x))
-    if fwhm < 1 or fwhm <= 2 * span or x.size < 100:
+    span = float(np.ptp(x))
+    if x.size >= 100:
+        _warn_of_metres(slab, beam, frequency, 2 * span, f"x spans {span:g} m")
+
+
+def warn_of_width_beside(slab: Slab, beam: Beam, frequency: np.ndarray) -> None:
+    """A hint that a beam of many wavelengths is much wider than the slab is thick, where there is no grid to compare it with."""
+    if slab.thickness > 0:
+        _warn_of_metres(slab, beam, frequency, 4 * slab.thickness, f"the slab is {slab.thickness:.3g} m thick")
+
+
+def _warn_of_metres(slab: Slab, beam: Beam, frequency: np.ndarray, wide: float, beside: str) -> None:
+    fwhm = float(np.max(getattr(beam, "fwhm", 0.0)))
+    if fwhm < 1 or fwhm <= wide:
         return
     wavelengths = fwhm * float(np.max(np.abs(slab.before.wavenumber(np.max(frequency))))) / (2 * np.pi)
     if 20 < wavelengths < np.inf:
-        hint(f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and x spans {span:g} m: is it in metres?")
+        hint(f"fwhm: {fwhm:g} m is {wavelengths:.3g} wavelengths, and {beside}: is it in metres?")
