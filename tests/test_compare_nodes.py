@@ -205,7 +205,7 @@ def cases(ours, at, p):
         "mesh first": ((mesh, foreign), "a: expected p .* field of beamprop .* got one of no known origin"),
         "own": ((own, mesh), "b: expected p .* got one of a source of the user's own"),
         "scaled": (
-            (ours.assign(p=1.001 * ours.p), mesh),
+            (ours.assign(p=ours.p.copy(data=1.001 * ours.p.values)), mesh),
             r"a: expected p as its provenance records it, got one that is off by 0\.0005",
         ),
         "moved": ((ours.assign_coords(z=ours.z + 0.01), mesh), "a: expected p as its provenance records it"),
