@@ -43,8 +43,9 @@ def imported(*arguments):
             ("-c", "import beamprop as bp; bp.Slab(bp.lmmd_cell(), 450)"),
             ("xarray", "scipy", "matplotlib", "pyfftw", "h5netcdf"),
         ),
+        (("-c", "import beamprop.api.beam_width, beamprop.io.datasets"), ("scipy", "matplotlib")),
     ],
-    ids=["help", "field help", "import", "a slab"],
+    ids=["help", "field help", "import", "a slab", "a question"],
 )
 def test_what_need_not_be_imported_is_not(arguments, heavy):
     """Help and the bare import are instant: nothing heavy is imported before it is used."""

@@ -10,7 +10,6 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
-from scipy.special import ive
 
 from .. import validate
 from ..conventions import real_or_complex
@@ -160,6 +159,8 @@ class Channels:
 
     def _mean(self, frequency: np.ndarray, prandtl: float) -> np.ndarray:
         """1 - tanh(s)/s in a slit, 1 - 2 I1(s)/(s I0(s)) in a tube: ratios of Bessel functions, which lose no digits."""
+        from scipy.special import ive
+
         s = self.size * np.sqrt(-2j * np.pi * frequency * prandtl * self.gas.density / self.gas.viscosity)
         order = 0.0 if self.round else -0.5
         wide = np.abs(s) > WIDE
