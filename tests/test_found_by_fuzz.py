@@ -118,3 +118,11 @@ def test_a_plan_of_stretches_for_a_response_without_rounding():
     """A response may be exact at the points looked at, such as that of no layers."""
     extent = Extent(46.0, 46.0, 50.0, 1.0, 0.2, 0.5)
     assert stretches.plan_stretches(extent, 0.1, 1e-8, 0.0) == stretches.plan_stretches(extent, 0.1, 1e-8, 1e-17)
+
+
+def test_widths_whose_way_without_the_slab_grows_beyond_all_numbers(quiet):
+    """A medium in front of density 1e47 along z and -18 094 along x: refused by name, with nothing of NumPy's."""
+    front = bp.Fluid(1.14254e47, 388849.0, density_x=-18094.1 + 5428.23j)
+    slab = bp.Slab(bp.lmmd_cell(), 10, before=front, after=bp.AIR)
+    with pytest.raises(ValueError, match=r"^(the field|before|slab|rtol)"):
+        bp.beam_width(slab, bp.GaussianBeam(0.3, x0=-1.7, z0=-0.1), 1731.5, angle=[-60.0, 60.0], rtol=1e-5)

@@ -167,6 +167,7 @@ def _on_worst_planes(by_plane: Estimate) -> Estimate:
     return by_plane._replace(budget=by_plane.budget.taken((np.arange(worst.size), worst)))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a term that is not finite counts as infinite
 def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     """The terms of the error of the first contour by requested beam and plane, (A, Z)."""
     sources = checks.sources
@@ -177,20 +178,23 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     a = sources.interpolated_to(summed)
     b = sources.interpolated_to(fields_of(checks, second) if second.fields is None else second.fields)
     largest = _largest(checks, a, b)
-    seen = largest > DARK if checks.dark is None else (largest > DARK) & ~checks.dark
+    seen = ~(largest <= DARK)  # a field that is not finite is not dark
+    if checks.dark is not None:
+        seen &= ~checks.dark
     scale = np.where(seen, largest, 1.0)
     zero = np.zeros(largest.shape)
-    with np.errstate(invalid="ignore", over="ignore"):
-        apart = np.max(np.abs(a - b), axis=2)
-        cut = interpolation = end = first_end = zero
-        if sources.beam.entire:
-            cut = _of_requested(sources, _cut_off(checks, first, float(np.max(np.abs(x)))))
-            end, first_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
-        if extremes.size:  # thrice, for five angles may miss the largest error
-            interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
-        source = _source_rounding(checks.k0, sources, first)
-        apart, source, cut, interpolation = (_weighed(v / scale, seen) for v in (apart, source, cut, interpolation))
-        end, first_end = (np.where(seen, v / scale, 0.0) for v in (end, first_end))
+    apart = np.max(np.abs(a - b), axis=2)
+    cut = interpolation = end = first_end = zero
+    if sources.beam.entire:
+        cut = _of_requested(sources, _cut_off(checks, first, float(np.max(np.abs(x)))))
+        end, first_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
+    if extremes.size:  # thrice, for five angles may miss the largest error
+        interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
+    source = _source_rounding(checks.k0, sources, first)
+    apart, source, cut, interpolation = (
+        MARGIN * _on_seen(v / scale, seen) for v in (apart, source, cut, interpolation)
+    )
+    end, first_end = (_on_seen(v / scale, seen) for v in (end, first_end))
     # both contours share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase,
     # and four of the numbers themselves
     way = float(np.max(np.abs(x)) + np.max(checks.z) - sources.beam.z0)
@@ -199,9 +203,9 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     return Estimate(budget, float(np.max(np.maximum(end, first_end))))
 
 
-def _weighed(term: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """A term with its margin, 0 on dark planes, and infinite where it is not finite."""
-    return np.where(seen, MARGIN * np.nan_to_num(term, nan=np.inf, posinf=np.inf), 0.0)
+def _on_seen(term: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """A term, 0 on dark planes, and infinite where it is not finite."""
+    return np.where(seen, np.nan_to_num(term, nan=np.inf, posinf=np.inf), 0.0)
 
 
 def _largest(checks: Checks, a: np.ndarray, b: np.ndarray) -> np.ndarray:

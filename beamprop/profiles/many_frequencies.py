@@ -116,6 +116,7 @@ ROUND = 0.25
 FEW = 8
 
 
+@np.errstate(over="ignore", invalid="ignore")  # rows that are not finite are not trusted
 def measured_together(
     routes: Sequence[Route], beam: Beam, rtol: float, level: float
 ) -> list[tuple[Measures, np.ndarray]]:

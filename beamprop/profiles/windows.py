@@ -49,6 +49,7 @@ class Windows(NamedTuple):
     thin: bool = True  #: take fewer positions where the plane waves that arrive need no more
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a field that is not finite is refused by name
 def widened(
     s: SampledSlab,
     beam: Beam,
