@@ -99,7 +99,7 @@ def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> M
 def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matrix:
     """Matrix of one period, near to far face: a polynomial in kx^2 where that is as exact, else layer by layer.
 
-    The polynomial makes 1.4 times as many widths a second (`beam_width`, 101 frequencies).
+    The polynomial makes 1.5 times as many widths a second (`beam_width`, 101 frequencies).
     """
     kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex, copy=False)
     count = len(layers.thickness)
