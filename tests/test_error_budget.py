@@ -130,3 +130,17 @@ def test_a_contour_in_stretches_gets_a_wider_band_or_shorter_panels():
     assert finer.finer > plan.finer
     assert finer.depth < plan.depth
     assert finer.height < plan.height
+
+
+def test_a_field_that_is_not_finite_is_not_taken_for_a_dark_plane(monkeypatch):
+    """Its estimated error is infinite; as a dark plane it would have none."""
+    asked, terms = [], error.terms_by_plane
+    monkeypatch.setattr(error, "terms_by_plane", lambda *args: asked.append(args) or terms(*args))
+    bp.field(bp.Slab(bp.lmmd_cell(eta=1 / 40), 7), bp.GaussianBeam(0.1), 2100.0, [0.0, 0.1], [0.0, 0.05])
+    checks, first, second = asked[0]
+    fields = error.fields_of(checks, second)
+    assert np.all(terms(checks, first, second._replace(fields=fields)).budget.total < 1)
+    fields[:, 1] = np.nan
+    total = terms(checks, first, second._replace(fields=fields)).budget.total
+    assert np.all(np.isinf(total[:, 1]))
+    assert np.all(total[:, 0] < 1)
