@@ -6,6 +6,7 @@ import accuracy
 import numpy as np
 import pytest
 from panels import panels
+from worse_contours import with_larger_errors
 
 import beamprop as bp
 from beamprop.contour import choose as contour_choice
@@ -217,17 +218,12 @@ def test_lower_accuracy_is_cheaper(loss, points):
 @pytest.mark.parametrize("ask", [bp.beam_width, bp.beam_measures])
 def test_widths_and_measures_say_when_rtol_is_not_reached(ask, monkeypatch):
     """As `field` does: one category of warning, with the estimate."""
-    choose = contour_choice.choose_contour
-
-    def worse(*args):
-        solution = choose(*args)
-        return solution._replace(budget=solution.budget._replace(difference=solution.budget.difference + 3e-4))
 
     def none_trusted(first, *_):
         count = len(first.right)
         return routes.Measures(*4 * [np.zeros(count)], contour_error.uniform_budget(count, 0.0)), np.zeros(count, bool)
 
-    monkeypatch.setattr(contour_choice, "choose_contour", worse)
+    with_larger_errors(monkeypatch, by=3e-4)
     monkeypatch.setattr(many_frequencies, "_measured", none_trusted)
     with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-04 .* above the requested rtol 1\.0e-07"):
         ask(bp.Slab(bp.lmmd_cell(), 20), bp.GaussianBeam(0.2), F, rtol=1e-7)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import xarray as xr
+from worse_contours import with_larger_errors
 
 import beamprop as bp
 from beamprop import progress
-from beamprop.contour import choose as contour_choice
 
 F = 2500.0
 CELL = bp.lmmd_cell()
@@ -221,13 +221,7 @@ def test_progress_wraps_the_work():
 
 def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
     """An estimate above rtol is reported in the dataset and warned of by a category of its own."""
-    choose = contour_choice.choose_contour
-
-    def worse(*args):
-        solution = choose(*args)
-        return solution._replace(budget=solution.budget._replace(difference=solution.budget.difference + 3e-5))
-
-    monkeypatch.setattr(contour_choice, "choose_contour", worse)
+    with_larger_errors(monkeypatch)
     with pytest.warns(
         bp.AccuracyWarning, match=r"3\.0e-05 .* above the requested rtol 1\.0e-08, mostly: the difference"
     ):

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from worse_contours import with_larger_errors
 
 import beamprop as bp
 from beamprop.contour import bent, check_points, error, in_stretches, paths, stretches
-from beamprop.contour import choose as contour_choice
 
 RTOL = 1e-8
 PLAN = paths.BentPlan(depth=2.0, window=10.0, band=100.0, bend=50.0)
@@ -52,13 +52,7 @@ def test_beams_between_take_the_terms_of_the_worse_neighbour():
 @pytest.mark.parametrize("term", error.ErrorBudget._fields)
 def test_a_warning_names_the_largest_term(term, monkeypatch):
     """Of a contour whose estimate is above rtol by one term: `field` warns with the estimate, rtol and the term in words."""
-    choose = contour_choice.choose_contour
-
-    def worse(*args):
-        chosen = choose(*args)
-        return chosen._replace(budget=chosen.budget._replace(**{term: chosen.budget.difference + 3e-5}))
-
-    monkeypatch.setattr(contour_choice, "choose_contour", worse)
+    with_larger_errors(monkeypatch, term)
     if term == "low_rank":  # this one is not the contour's: planes of a few are none here
         monkeypatch.setattr("beamprop.fields.evaluate.fill_map", lambda *_: np.array([3e-5]))
     with pytest.warns(bp.AccuracyWarning, match=rf"3\.0e-05 .* rtol 1\.0e-08, mostly: {error.TERMS[term]}$"):

@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from worse_contours import with_larger_errors
 
 import beamprop as bp
-from beamprop.contour import choose, error
+from beamprop.contour import error
 from beamprop.profiles import many_frequencies, power, routes
 
 SLAB = bp.Slab(bp.lmmd_cell(), 20)
@@ -14,18 +15,6 @@ F = 2500.0  # Hz
 
 def pattern(estimate, of, words):
     return rf"^estimated error {estimate} of {of}, above the requested rtol 1\.0e-06, mostly: {words}$"
-
-
-def with_term(monkeypatch, term, value):
-    """Every contour's estimate is larger by one term."""
-    choose_contour = choose.choose_contour
-
-    def worse(*args):
-        chosen = choose_contour(*args)
-        budget = chosen.budget
-        return chosen._replace(budget=budget._replace(**{term: getattr(budget, term) + value}))
-
-    monkeypatch.setattr(choose, "choose_contour", worse)
 
 
 # --- widths -----------------------------------------------------------------------------------------------
@@ -56,7 +45,7 @@ def test_a_width_names_the_difference_of_two_contours_at_many_frequencies(monkey
 @pytest.mark.parametrize("term", [name for name in error.ErrorBudget._fields if name != "low_rank"])
 def test_a_width_names_the_largest_term_of_its_contour(term, monkeypatch):
     """A beam whose spectrum is not entire is measured by itself at each frequency."""
-    with_term(monkeypatch, term, 3e-5)
+    with_larger_errors(monkeypatch, term, 3e-5)
     rotated = bp.GaussianBeam(0.3, angle=10.0, z0=-0.05, form="rotated")
     with pytest.warns(bp.AccuracyWarning, match=pattern(r"3\.0e-05", r"the largest \|p\|", error.TERMS[term])):
         bp.beam_width(SLAB, rotated, F, rtol=1e-6)
@@ -76,7 +65,7 @@ def test_measures_as_a_table_and_back():
 
 @pytest.mark.parametrize("term", [name for name in error.ErrorBudget._fields if name != "low_rank"])
 def test_a_measure_names_the_largest_term_of_its_contour(term, monkeypatch):
-    with_term(monkeypatch, term, 3e-5)
+    with_larger_errors(monkeypatch, term, 3e-5)
     with pytest.warns(bp.AccuracyWarning, match=pattern(r"3\.0e-05", r"the largest \|p\|", error.TERMS[term])):
         bp.beam_measures(SLAB, BEAM, F, rtol=1e-6)
 

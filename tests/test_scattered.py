@@ -5,10 +5,10 @@ import tracemalloc
 import numpy as np
 import oracles
 import pytest
+from worse_contours import with_larger_errors
 
 import beamprop as bp
 from beamprop.api.field_at import field_at
-from beamprop.contour import choose as choose_module
 from beamprop.fields import scattered
 
 K0 = 2 * np.pi * 2500.0 / 343.0
@@ -92,13 +92,7 @@ def test_memory_is_that_of_a_block():
 
 def test_an_accuracy_that_is_not_reached_is_said(monkeypatch):
     """As of a field on a grid."""
-    choose = choose_module.choose_contour
-
-    def worse(*args):
-        chosen = choose(*args)
-        return chosen._replace(budget=chosen.budget._replace(difference=chosen.budget.difference + 3e-5))
-
-    monkeypatch.setattr(choose_module, "choose_contour", worse)
+    with_larger_errors(monkeypatch)
     asked = record(bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.096), rtol=1e-8)
     with pytest.warns(bp.AccuracyWarning, match=r"3\.0e-05 .* rtol 1\.0e-08, mostly: the difference"):
         field_at(asked, np.array([2500.0]), np.zeros(1), np.zeros(2), np.array([0.0, 0.1]))

@@ -18,7 +18,7 @@ from ..contour.paths import periodic_contour
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..sources.base import Beam
-from .power import COARSE, FINE, LEAST, MOST_PANELS, SHARE, PowerError, _nodes, _rule
+from .power import COARSE, FINE, LEAST, MOST_PANELS, SHARE, PowerError, nodes_of, rule_of
 
 #: kx (n,), real, and a shift of its last bits -> what waves of kx and -kx carry along z through each plane, per kx: (Z, n).
 Flux = Callable[[np.ndarray, float], np.ndarray]
@@ -112,12 +112,12 @@ def _integrated(
 
     def sums(start: np.ndarray, stop: np.ndarray) -> np.ndarray:
         """Integrals by the finer rule, what they differ by from the coarser one's, their change with the last bits, and sizes: (4, Z + 1, P)."""
-        nodes, half = _nodes(end, edges, start, stop), (stop - start) / 2
+        nodes, half = nodes_of(end, edges, start, stop), (stop - start) / 2
         values = flux(nodes.kx.ravel(), 0.0).reshape(-1, *nodes.kx.shape) * (nodes.slope * half[:, None])
         moved = flux(nodes.kx[:, :FINE].ravel(), SHIFT).reshape(values.shape[0], -1, FINE)
-        moved = moved * (nodes.slope[:, :FINE] * half[:, None]) @ _rule(FINE)[1]
-        fine, coarse = values[..., :FINE] @ _rule(FINE)[1], values[..., FINE:] @ _rule(COARSE)[1]
-        return np.stack([fine, fine - coarse, moved - fine, np.abs(values[..., :FINE]) @ _rule(FINE)[1]])
+        moved = moved * (nodes.slope[:, :FINE] * half[:, None]) @ rule_of(FINE)[1]
+        fine, coarse = values[..., :FINE] @ rule_of(FINE)[1], values[..., FINE:] @ rule_of(COARSE)[1]
+        return np.stack([fine, fine - coarse, moved - fine, np.abs(values[..., :FINE]) @ rule_of(FINE)[1]])
 
     panels = sums(start, stop)
     while start.size < MOST_PANELS:

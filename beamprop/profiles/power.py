@@ -95,7 +95,7 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     stop = np.add.outer(np.arange(edges.size - 1), even[1:]).ravel()
 
     def values(start: np.ndarray, stop: np.ndarray) -> tuple[_Nodes, np.ndarray, np.ndarray, np.ndarray]:
-        nodes = _nodes(k, edges, start, stop)
+        nodes = nodes_of(k, edges, start, stop)
         return nodes, density(nodes.kx.ravel()), moved(nodes.kx.ravel()[nodes.fine]), stop - start
 
     panels = values(start, stop)
@@ -121,13 +121,13 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
     return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), error)
 
 
-def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
+def nodes_of(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
     """Nodes on panels that are parts of i < i + u < i + 1, which maps to alpha between edges i and i + 1.
 
     Next to branch points alpha goes as u^2, which takes out their square roots.
     """
     first = np.floor(start).astype(int)
-    g = np.concatenate([_rule(FINE)[0], _rule(COARSE)[0]])
+    g = np.concatenate([rule_of(FINE)[0], rule_of(COARSE)[0]])
     u = (start - first)[:, None] + (stop - start)[:, None] * (g + 1) / 2
     alpha, slope = np.empty(u.shape), np.empty(u.shape)
     for i in range(edges.size - 1):
@@ -137,7 +137,8 @@ def _nodes(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> 
     return _Nodes(k * np.sin(alpha), alpha, k * np.cos(alpha) * slope)
 
 
-def _rule(count: int) -> tuple[np.ndarray, np.ndarray]:
+def rule_of(count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and weights of Gauss's rule on -1 to 1."""
     g, v = np.polynomial.legendre.leggauss(count)
     return g, v
 
@@ -148,12 +149,12 @@ def _summed(nodes: _Nodes, plain: np.ndarray, moved: np.ndarray, width: np.ndarr
     right, left = right.real, left.real
     angle = np.degrees(nodes.alpha)
     off, across = angle - about, -angle - about
-    v, half = _rule(FINE)[1], width / 2
+    v, half = rule_of(FINE)[1], width / 2
     moments = (
         np.stack([right + left, right * off + left * across, right * off**2 + left * across**2])[..., :FINE] @ v * half
     )
     both = np.stack([right + left, response])
-    fine, coarse = both[..., :FINE] @ v * half, both[..., FINE:] @ _rule(COARSE)[1] * half
+    fine, coarse = both[..., :FINE] @ v * half, both[..., FINE:] @ rule_of(COARSE)[1] * half
     changed = moved.reshape(3, -1, FINE) * nodes.slope[:, :FINE]
     changed = np.stack([changed[0] + changed[1], changed[2]]) @ v * half - fine
     rounding = np.stack([changed[0].real, np.abs(changed[1])])

@@ -35,7 +35,7 @@ def fill_interior(
         for i in range(kx.shape[0]):
             fill = _fill_single if station.matrix is None else _fill_periodic
             fill(
-                _at_frequency(station, i),
+                station_at(station, i),
                 omega[i : i + 1],
                 kx[i : i + 1],
                 places,
@@ -47,7 +47,7 @@ def fill_interior(
     return out
 
 
-def _at_frequency(station: Station, i: int) -> Station:
+def station_at(station: Station, i: int) -> Station:
     """A station at frequency i alone: leading axis 1."""
 
     def taken(record: Any) -> Any:
@@ -72,7 +72,7 @@ def _fill_single(
 ) -> None:
     """Fill rows of `out` that lie in a segment of one period: from the state behind each layer, the rest of that layer."""
     omega2, kx2 = omega * omega, kx * kx
-    for j, here in _by_layer(places):
+    for j, here in by_layer(places):
         face = station.faces[j]
         scale = np.exp(face.log[0] - near_log) * per_incident
         A, B, _ = one_layer(station.values.layers, j, omega2, kx2) if here.size >= TWO_WAVES else (None, None, None)
@@ -106,7 +106,7 @@ def _two_waves(w: np.ndarray, A: np.ndarray, face: State, scale: np.ndarray, sha
     return out
 
 
-def _by_layer(places: Places) -> Iterator[tuple[int, np.ndarray]]:
+def by_layer(places: Places) -> Iterator[tuple[int, np.ndarray]]:
     """Layers that hold depths, and the indices of these."""
     order = np.argsort(places.layer, kind="stable")
     layers, first = np.unique(places.layer[order], return_index=True)
@@ -207,7 +207,7 @@ def _back_through(
     layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places, states: State
 ) -> Iterator[tuple[np.ndarray, Pressures]]:
     """Carry states (2, n) back through a cell that does not grow: for each layer that holds depths, their indices and its pressures."""
-    holding = dict(_by_layer(places))
+    holding = dict(by_layer(places))
     for j, A, B, face in _faces_back(layers, omega, kx, set(holding), states):
         yield holding[j], _rest_of_layer(A, B, face)
 
@@ -240,12 +240,12 @@ def _rest_of_layer(A: np.ndarray, B: np.ndarray, face: State) -> Pressures:
     return pressures
 
 
-def _with_tails(
+def with_tails(
     layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places
 ) -> Iterator[tuple[int, np.ndarray, Matrix | None]]:
     """Layers that hold depths, the indices of these, and the matrix of the layers behind in the cell."""
     omega2, kx2 = omega * omega, kx * kx
-    holding = dict(_by_layer(places))
+    holding = dict(by_layer(places))
     tail: Matrix | None = None
     for j in reversed(range(min(holding), len(layers.thickness))):
         if j in holding:
@@ -270,7 +270,7 @@ def _fill_opaque(
     layers, periods = station.values
     assert station.matrix is not None
     assert station.bloch is not None
-    for j, here, tail in _with_tails(layers, omega, kx, places):
+    for j, here, tail in with_tails(layers, omega, kx, places):
         behind = periods - 1 - places.period[here]
         state = power_back(station.matrix, station.bloch, station.far, behind[:, None])
         if tail is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays.matmul import BLOCK
 from .cell import matrix_back
-from .interior import ROWS, _at_frequency, _by_layer, _with_tails
+from .interior import ROWS, by_layer, station_at, with_tails
 from .layer import State, layer_back, one_layer
 from .periods import power_back
 from .recursion import Places, Station, places_of, segment_of
@@ -41,7 +41,7 @@ def fill_velocity(
             block = rows[start : start + size]
             places = places_of(station.values, z[block] - station.start)
             for i in range(kx.shape[0]):
-                w, k, at_i = omega[i : i + 1], kx[i : i + 1], _at_frequency(station, i)
+                w, k, at_i = omega[i : i + 1], kx[i : i + 1], station_at(station, i)
                 layers = at_i.values.layers
                 for j, here, behind in _states_behind(at_i, w, k, places):
                     state = layer_back(behind, *one_layer(layers, j, w * w, k * k, places.share[here][:, None]))
@@ -55,9 +55,9 @@ def _states_behind(
 ) -> Iterator[tuple[int, np.ndarray, State]]:
     """Layers that hold depths, the indices of these, and the states at the layer's far face in their periods."""
     if station.matrix is None or station.bloch is None:
-        yield from ((j, here, station.faces[j]) for j, here in _by_layer(places))
+        yield from ((j, here, station.faces[j]) for j, here in by_layer(places))
         return
-    for j, here, tail in _with_tails(station.values.layers, omega, kx, places):
+    for j, here, tail in with_tails(station.values.layers, omega, kx, places):
         periods = station.values.periods - 1 - places.period[here]
         state = power_back(station.matrix, station.bloch, station.far, periods[:, None])
         yield j, here, state if tail is None else matrix_back(tail, state)
