@@ -1,4 +1,4 @@
-"""The field of `field` at scattered points, for the nodes of somebody's mesh: no question of its own, but what `compare` asks."""
+"""The field of `field` at scattered points, the nodes of a foreign mesh: what `compare` needs."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def field_at(
         As `field` does.
     """
     slab, beam, boundary, period, rtol = (record[n] for n in ("slab", "beam", "boundary", "period", "rtol"))
-    asked, _ = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
-    frequencies, angles = asked.shape[:2]
+    question, _ = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol)
+    frequencies, angles = question.shape[:2]
     memory.check(
         "x",
         16.0 * frequencies * angles * x.size + 80.0 * TERMS,
@@ -50,11 +50,11 @@ def field_at(
         "take fewer nodes",
     )
     depths = np.sort(z)[np.linspace(0, z.size - 1, min(z.size, MOST_DEPTHS)).round().astype(int)]
-    chosen = dataclasses.replace(asked, z=depths)
+    chosen = dataclasses.replace(question, z=depths)
     p, worst = np.empty((frequencies, angles, x.size), complex), uniform_budget(1, 0.0)
     for i in range(frequencies):
         prepared = prepare(chosen, i)
-        p[i] = at_points(prepared, asked.x, asked.z)
+        p[i] = at_points(prepared, question.x, question.z)
         worst = worst.worse(prepared.quadrature.budget)
-    checks.warn_if_inaccurate(worst, asked.rtol)
+    checks.warn_if_inaccurate(worst, question.rtol)
     return p

@@ -30,8 +30,8 @@ class _Unknown(BaseException):
     """Ends a question at a point whose widths are not known yet; no handler of the question's own catches it."""
 
 
-class _Asked:
-    """A question that is being asked: the points that it came to, in order, and their widths."""
+class _Call:
+    """A call of a question: the points that it came to, in order, and their widths."""
 
     def __init__(self, question: Callable[[], Any]) -> None:
         self.question = question
@@ -42,7 +42,7 @@ class _Asked:
     def answer(self) -> Any:
         """The answer, or the error that was raised; _Unknown where a point stands in the way."""
         self.passed = 0
-        token = _ASKED.set(self)
+        token = _RUNNING.set(self)
         try:
             return self.question()
         except _Unknown:
@@ -50,7 +50,7 @@ class _Asked:
         except Exception as error:
             return error
         finally:
-            _ASKED.reset(token)
+            _RUNNING.reset(token)
 
     def known(self, point: Point) -> Widths | None:
         """The widths at a point that is met again."""
@@ -61,13 +61,13 @@ class _Asked:
         raise _Unknown
 
 
-_ASKED: ContextVar[_Asked | None] = ContextVar("question", default=None)
+_RUNNING: ContextVar[_Call | None] = ContextVar("question", default=None)
 
 
 def widths_known(point: Point) -> Widths | None:
     """The widths at a point if they were computed for a question that is asked `together`; else None."""
-    asked = _ASKED.get()
-    return None if asked is None or not isinstance(point.beam, Hashable) else asked.known(point)
+    call = _RUNNING.get()
+    return None if call is None or not isinstance(point.beam, Hashable) else call.known(point)
 
 
 def together(questions: Sequence[Callable[[], Any]]) -> list[Any]:
@@ -82,25 +82,25 @@ def together(questions: Sequence[Callable[[], Any]]) -> list[Any]:
     >>> [round(answer, 5) for answer in together([partial(width, 1 / 60), partial(width, 1 / 50)])]
     [0.09665, 0.09688]
     """
-    return _answers([_Asked(question) for question in questions])
+    return _answers([_Call(question) for question in questions])
 
 
 def asks_for_widths(question: Callable[[], Any]) -> tuple[Any, bool]:
     """The answer to a question or its error, and whether it asked for widths that are computed in one go with those of others."""
-    asked = _Asked(question)
-    (answer,) = _answers([asked])
-    return answer, bool(asked.points)
+    call = _Call(question)
+    (answer,) = _answers([call])
+    return answer, bool(call.points)
 
 
-def _answers(asked: list[_Asked]) -> list[Any]:
-    answers: list[Any] = [_Unknown] * len(asked)
-    waiting = list(range(len(asked)))
+def _answers(calls: list[_Call]) -> list[Any]:
+    answers: list[Any] = [_Unknown] * len(calls)
+    waiting = list(range(len(calls)))
     while waiting:
         for i in waiting:
-            answers[i] = asked[i].answer()
+            answers[i] = calls[i].answer()
         waiting = [i for i in waiting if answers[i] is _Unknown]
-        for i, widths in zip(waiting, _widths([asked[i].points[-1] for i in waiting]), strict=True):
-            asked[i].widths.append(widths)
+        for i, widths in zip(waiting, _widths([calls[i].points[-1] for i in waiting]), strict=True):
+            calls[i].widths.append(widths)
     return answers
 
 

@@ -56,7 +56,7 @@ class Design(NamedTuple):
         return spaced(launch, thickness + behind if self.layered else 1.25 * thickness, 561)
 
 
-def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -> Design:
+def design(table: Mapping[str, Any], before: Fluid, requested: Axis | None = None) -> Design:
     """The design of a slab that is described by a table with the names of `media.SLAB`.
 
     Parameters
@@ -64,7 +64,7 @@ def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -
     table : mapping of str to plain values
     before : Fluid
         In front of the slab.
-    asked : float or array, Hz, optional
+    requested : float or array, Hz, optional
         The frequencies of the question. The paper's cell has a frequency of its own; of other layers, the middle of these is taken.
 
     Raises
@@ -80,22 +80,24 @@ def design(table: Mapping[str, Any], before: Fluid, asked: Axis | None = None) -
     layered = of_layers(table)
     if not layered:
         middle = frequency(table.get("design_frequency", CELL["design_frequency"].default), "design_frequency")
-    elif asked is None:
+    elif requested is None:
         raise ValueError("frequency: expected a frequency [Hz] for these layers, got none")
     else:
-        middle = asked if isinstance(asked, float) else float(asked.min() + asked.max()) / 2
-    if not layered and asked is not None and "design_frequency" not in table:
-        _hint(middle, asked)
+        middle = requested if isinstance(requested, float) else float(requested.min() + requested.max()) / 2
+    if not layered and requested is not None and "design_frequency" not in table:
+        _hint(middle, requested)
     return Design(middle, _wavelength(table, before, middle), layered)
 
 
-def _hint(middle: float, asked: Axis) -> None:
+def _hint(middle: float, requested: Axis) -> None:
     """Warn where every frequency is far from that of a design which nobody chose."""
     import warnings
 
     from ..media.hints import HintWarning
 
-    first, least, most = (asked,) * 3 if isinstance(asked, float) else (asked[0], asked.min(), asked.max())
+    first, least, most = (
+        (requested,) * 3 if isinstance(requested, float) else (requested[0], requested.min(), requested.max())
+    )
     if least > FAR * middle or most < middle / FAR:
         said = f"design_frequency: the cell is the paper's, designed for {middle:g} Hz; give one near {first:g} Hz to scale it"
         warnings.warn(said, HintWarning, stacklevel=3)

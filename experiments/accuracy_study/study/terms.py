@@ -96,7 +96,7 @@ TERMS = [
     Term("what lies beyond the band", "contour.error", "_beyond", _nothing_beyond, tuple(cones())),
     Term("a spectrum that is cut off", "contour.error", "terms_by_plane", term_of_budget("cut_spectrum"), tuple(coarse_profiles())),
     Term("interpolation over angles", "contour.error", "terms_by_plane", term_of_budget("angle_interpolation"), (MIXED,)),
-    Term("planes made of a few", "fields.evaluate", "_fill_low_rank", _no_low_rank, tuple(range(1, 600, 5))),
+    Term("planes by low rank", "fields.evaluate", "_fill_low_rank", _no_low_rank, tuple(range(1, 600, 5))),
     Term("rounding of long phases", "contour.error", "terms_by_plane", term_of_budget("long_phases"), tuple(tilted_plateaus())),
     Term(
         "second response moved in its last bits", "contour.error", "sampled", _not_moved,
