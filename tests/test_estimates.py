@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from accuracy_study.cases.numbering import make_case
 from panels import panels
 
 import beamprop as bp
@@ -67,3 +68,21 @@ def test_images_between_far_ends_of_a_grid_are_in_the_estimate():
     expected = bp.field(slab, beam, 3322.2056556, some, [0.332368], rtol=1e-12).p.values
     error = np.max(np.abs(found.p.sel(x=some).values - expected)) / np.max(np.abs(found.p.values))
     assert 1e-11 < error < 3 * float(found.error_estimate)
+
+
+def test_a_plane_that_only_waves_beyond_the_contour_reach_is_warned_of():
+    """Slits in front of 671 m of a slab that is opaque but for a band of evanescent waves: |p| is 5e-61 deep inside, not 0."""
+    case = make_case(5883)
+    with pytest.warns(bp.AccuracyWarning, match="estimated error inf .* mostly: the end of the band of plane waves"):
+        ds = bp.field(case.slab, case.beam, case.frequency, case.x, case.z, rtol=case.rtol)
+    assert np.isinf(ds.error_estimate)
+    front = bp.field(case.slab, case.beam, case.frequency, case.x, case.z[:2], rtol=case.rtol)
+    assert float(front.error_estimate) < case.rtol
+
+
+def test_a_plane_that_nothing_reaches_is_not_warned_of():
+    """Behind a kilometre of a fluid that carries no waves, of a Gaussian beam: 0, and right."""
+    slab = bp.Slab.uniform(bp.Fluid(-1.25, 1.4e5), 1000.0)
+    ds = bp.field(slab, bp.GaussianBeam(0.3, z0=-0.1), 2500.0, [0.0, 0.1], [slab.thickness])
+    assert float(ds.error_estimate) < 1e-8
+    assert np.all(ds.p == 0)

@@ -22,6 +22,7 @@ from .quadrature import Quadrature as Quadrature
 from .search import BELOW_RTOL, MOST_PLANE_WAVES, begin, too_many_plane_waves
 from .straight import quadrature_on_straight_contours, spacing_for_fft
 from .survey import Survey, survey
+from .unseen_bands import with_unseen_bands
 
 
 def choose_contour(
@@ -45,7 +46,8 @@ def choose_contour(
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
     seen = survey(s, sources, transfer, points, planes, extent, rtol)
     checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
-    return _chosen(s, checks, extent, seen, x, rtol)._replace(checked_planes=planes)
+    chosen = with_unseen_bands(s, checks, _chosen(s, checks, extent, seen, x, rtol))
+    return chosen._replace(checked_planes=planes)
 
 
 def _chosen(s: SampledSlab, checks: Checks, extent: Extent, seen: Survey, x: np.ndarray, rtol: float) -> Quadrature:
