@@ -1,0 +1,67 @@
+"""Laminates of two fluids (density, sound speed), and layers that repeat."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+from .layers import along_z, impedance
+
+
+def rytov_cosine(first, second, thicknesses, w, kx):
+    """cos(K P) = cos a cos b - (Z1/Z2 + Z2/Z1)/2 sin a sin b (Rytov 1956)."""
+    a, b = (along_z(fluid, w, kx) * d for fluid, d in zip((first, second), thicknesses, strict=True))
+    ratio = impedance(first, w, kx) / impedance(second, w, kx)
+    return cmath.cos(a) * cmath.cos(b) - (ratio + 1 / ratio) / 2 * cmath.sin(a) * cmath.sin(b)
+
+
+def stack(first, second, thicknesses, periods, around, w, kx):
+    """r and t of periods between half-spaces: the cell's matrix, its power by Chebyshev polynomials (Abeles; Born and Wolf 1.6.5)."""
+    m = ((1, 0), (0, 1))
+    for fluid, d in zip((first, second), thicknesses, strict=True):
+        phase, z = along_z(fluid, w, kx) * d, impedance(fluid, w, kx)
+        c, s = cmath.cos(phase), cmath.sin(phase)
+        # (p, v) on the near side from those on the far side
+        m = product(m, ((c, -1j * z * s), (-1j * s / z, c)))
+    half_trace = (m[0][0] + m[1][1]) / 2
+    phi = cmath.acos(half_trace)
+    u1, u2 = (cmath.sin((periods - k) * phi) / cmath.sin(phi) for k in (0, 1))
+    (a, b), (c, d) = ([m[i][j] * u1 - (i == j) * u2 for j in (0, 1)] for i in (0, 1))
+    z = impedance(around, w, kx)
+    sums = a + b / z + z * c + d
+    return (a + b / z - z * c - d) / sums, 2 / sums
+
+
+def product(m, n):
+    """Of two 2 x 2 matrices."""
+    return tuple(tuple(sum(m[i][k] * n[k][j] for k in (0, 1)) for j in (0, 1)) for i in (0, 1))
+
+
+def quarter_wave_mirror(around, first, second, periods):
+    """Reflectivity of quarter-wave pairs: ((Z0 - Y)/(Z0 + Y))^2, Y = Z0 (Z1/Z2)^(2N) (Born and Wolf 1.6.5)."""
+    z1, z2 = (fluid[0] * fluid[1] for fluid in (first, second))
+    q = (z1 / z2) ** (2 * periods)
+    return ((1 - q) / (1 + q)) ** 2
+
+
+def quarter_wave_gap(first, second, centre):
+    """Edges of the stop band of quarter-wave pairs: centre (1 -+ (2/pi) asin |Z1 - Z2|/(Z1 + Z2))."""
+    z1, z2 = (fluid[0] * fluid[1] for fluid in (first, second))
+    half = 2 / math.pi * math.asin(abs(z1 - z2) / (z1 + z2))
+    return centre * (1 - half), centre * (1 + half)
+
+
+def staircase_sum(layers, orders=4000):
+    """2 sum |b_n|^2 / n^2 of the paper's staircase of a cosine: |b_n| = sin(pi n/N)/(2 pi n/N) for n = +-1 mod N, 0 otherwise."""
+    terms = (
+        (math.sin(math.pi * n / layers) / (2 * math.pi * n / layers)) ** 2 / n**2
+        for m in range(orders)
+        for n in ((1,) if m == 0 else (m * layers - 1, m * layers + 1))
+    )
+    return 2 * math.fsum(terms)
+
+
+def paper_transmissivity(rho_eff, angle, k0_length):
+    """The paper's Eq. (11) with its F for the relative density and k0 L."""
+    kz, a = cmath.sqrt(rho_eff), cmath.sqrt(rho_eff) * math.cos(math.radians(angle))
+    return abs(cmath.cos(kz * k0_length) - 0.5j * (a + 1 / a) * cmath.sin(kz * k0_length)) ** -2
