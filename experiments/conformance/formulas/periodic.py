@@ -51,6 +51,18 @@ def quarter_wave_gap(first, second, centre):
     return centre * (1 - half), centre * (1 + half)
 
 
+def mean_medium(first, second, thicknesses, w, kx):
+    """kz of infinitely thin layers, <rho> (w^2 <1/K> - kx^2 <1/rho>) (Rytov 1956), and the phase |kz| d across both as they are."""
+
+    def mean(property_of):
+        terms = (property_of(fluid) * d for fluid, d in zip((first, second), thicknesses, strict=True))
+        return sum(terms) / sum(thicknesses)
+
+    squared = w * w * mean(lambda f: 1 / (f[0] * f[1] ** 2)) - kx * kx * mean(lambda f: 1 / f[0])
+    phase = sum(abs(along_z(fluid, w, kx)) * d for fluid, d in zip((first, second), thicknesses, strict=True))
+    return cmath.sqrt(mean(lambda f: f[0]) * squared), phase
+
+
 def staircase_sum(layers, orders=4000):
     """2 sum |b_n|^2 / n^2 of the paper's staircase of a cosine: |b_n| = sin(pi n/N)/(2 pi n/N) for n = +-1 mod N, 0 otherwise."""
     terms = (

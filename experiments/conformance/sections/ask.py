@@ -12,6 +12,11 @@ OIL, BRAIN, HELIUM = (810.0, 1324.0), (1040.0, 1560.0), (0.17, 1007.0)
 NAMES = {AIR: "air", WATER: "water", STEEL: "steel", OIL: "kerosene", BRAIN: "brain", HELIUM: "helium"}
 
 
+def name_of(pair: tuple[float, float]) -> str:
+    """A fluid's name, or its numbers."""
+    return NAMES.get(pair, f"{pair[0]:g} kg/m3 and {pair[1]:g} m/s")
+
+
 def fluid(pair: tuple[complex, float]) -> bp.Fluid:
     """The package's fluid of a density and a speed."""
     return bp.Fluid(pair[0], pair[0] * pair[1] ** 2)

@@ -11,7 +11,7 @@ import beamprop as bp
 
 from ..formulas import beams
 from ..records import Row, Section, next_term, requested
-from .ask import AIR, fluid
+from .ask import AIR, HELIUM, fluid, name_of
 
 RTOL = 1e-9
 PARAXIAL = "Lax et al. 1975"
@@ -52,7 +52,12 @@ def of_slits() -> list[Row]:
         exact = [beams.rayleigh_sommerfeld(apertures, k, at, z[i]) for at in x]
         name = f"p behind two slits, x = {x[j]:g} m, z = {z[i]:g} m"
         row = Row(
-            name, "Sommerfeld 1896, first integral", p[i, j], exact[j], requested(RTOL), scale=max(map(abs, exact))
+            name,
+            "Rayleigh-Sommerfeld integral, Born and Wolf 1999, 8.11",
+            p[i, j],
+            exact[j],
+            requested(RTOL),
+            scale=max(map(abs, exact)),
         )
         out.append(row)
     far = 400.0
@@ -68,7 +73,7 @@ def of_slits() -> list[Row]:
         out.append(
             Row(
                 f"amplitude {far:g} m behind the slits, {angle:g}° over 0°",
-                "Fraunhofer",
+                "Fraunhofer, Born and Wolf 1999, 8.5",
                 ours[0] / ours[1],
                 exact,
                 term,
@@ -82,7 +87,7 @@ def of_displacements() -> list[Row]:
     out, frequency, width = [], 2500.0, 8.0
     k = 2 * math.pi * frequency / AIR[1]
     a = width / (2 * math.sqrt(math.log(2)))
-    for after, angle in (((1.0, 600.0), 50.0), ((1.0, 600.0), 60.0), ((1.0, 600.0), 75.0), ((0.17, 1007.0), 40.0)):
+    for after, angle in (((1.0, 600.0), 50.0), ((1.0, 600.0), 60.0), ((1.0, 600.0), 75.0), (HELIUM, 40.0)):
         slab = bp.Slab.interface(fluid(AIR), fluid(after))
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # nothing radiates behind
@@ -92,7 +97,7 @@ def of_displacements() -> list[Row]:
         def shift(kx: float, after: tuple = after) -> float:
             return beams.total_reflection_shift(AIR, after, k, kx)
 
-        name = f"lateral shift (m) of total reflection, air to {after} (kg/m3, m/s), {angle:g}°"
+        name = f"lateral shift (m) of total reflection, air to {name_of(after)}, {angle:g}°"
         exact = beams.mean_shift(shift, k, a, angle)
         # the field is right to 1e-8 of its peak over a width 100 times the shift
         out.append(Row(f"{name}, mean over the beam", "Artmann 1948", ours, exact, requested(1e-6)))

@@ -11,7 +11,7 @@ import beamprop as bp
 
 from ..formulas import layers
 from ..records import Row, Section, rounding
-from .ask import AIR, BRAIN, NAMES, OIL, STEEL, WATER, fluid, plane_wave
+from .ask import AIR, BRAIN, OIL, STEEL, WATER, fluid, name_of, plane_wave
 
 RAYLEIGH = "Rayleigh 1896, section 270"
 SNELL = "Brekhovskikh 1980"
@@ -33,7 +33,7 @@ def rows() -> list[Row]:
     pairs = ((WATER, STEEL), (STEEL, WATER), (WATER, OIL), (AIR, WATER), (BRAIN, WATER))
     out = []
     for before, after in pairs:
-        name = f"r of {NAMES[before]} to {NAMES[after]}"
+        name = f"r of {name_of(before)} to {name_of(after)}"
         w = 2e6 * math.pi
         out.append(
             Row(
@@ -48,13 +48,13 @@ def rows() -> list[Row]:
             exact = layers.face_by_angle(before, after, angle)
             out.append(Row(f"{name}, {angle:g}°", SNELL, reflection(before, after, angle), exact, rounding(), scale=1))
     for before, after in ((WATER, (500.0, 1700.0)), ((1000.0, 1500.0), (1500.0, 1200.0)), (OIL, (700.0, 1400.0))):
-        name = f"angle of intromission (degree), {before} to {after} (kg/m3, m/s)"
+        name = f"angle of intromission (degree), {name_of(before)} to {name_of(after)}"
         out.append(Row(name, SNELL, intromission(before, after), layers.intromission_angle(before, after), rounding()))
     for before, after in ((WATER, STEEL), (AIR, WATER), (OIL, STEEL)):
         slab = bp.Slab.interface(fluid(before), fluid(after))
         energy = float(bp.scattering(slab, 1e6, angle=0.0).energy_transmission)
         z1, z2 = before[0] * before[1], after[0] * after[1]
-        name = f"share of energy through {NAMES[before]} to {NAMES[after]}, 0°"
+        name = f"share of energy through {name_of(before)} to {name_of(after)}, 0°"
         out.append(Row(name, "Rayleigh 1896, 4 Z1 Z2/(Z1 + Z2)²", energy, 4 * z1 * z2 / (z1 + z2) ** 2, rounding()))
     for angle in (20.0, 60.0):
         exact = cmath.phase(layers.face_by_angle(WATER, STEEL, angle))

@@ -8,7 +8,7 @@ from common import DESIGN, FWHM, LOSSES, LOSSLESS, WAVELENGTH, slab
 import beamprop as bp
 
 from ..records import Row, Section, Tolerance
-from .ask import AIR, OIL, WATER, fluid, stack
+from .ask import AIR, HELIUM, OIL, WATER, fluid, stack
 
 #: Not a whole number of wavelengths: no order travels along the faces.
 PERIOD = 6.3
@@ -22,8 +22,8 @@ def rows() -> list[Row]:
         ("20 lossy periods, 0°", slab(20, LOSSES["a"]), 0.0, DESIGN, WAVELENGTH),
         ("plates in water, 20°", plates, 20.0, 1e6, 1482e-6),
         (
-            "helium before air, 30°",
-            bp.Slab.uniform(fluid((0.17, 1007.0)), 0.05, fluid(AIR), fluid(AIR)),
+            "5 cm of helium in air, 30°",
+            bp.Slab.uniform(fluid(HELIUM), 0.05, fluid(AIR), fluid(AIR)),
             30.0,
             DESIGN,
             WAVELENGTH,

@@ -10,11 +10,11 @@ import beamprop as bp
 
 from ..formulas import layers
 from ..records import Row, Section, next_term, rounding
-from .ask import AIR, BRAIN, HELIUM, NAMES, OIL, STEEL, WATER, fluid, lateral, plane_wave, stack
+from .ask import AIR, BRAIN, HELIUM, OIL, STEEL, WATER, fluid, lateral, name_of, plane_wave, stack
 
 LAYER = "Brekhovskikh 1980, input impedance of a layer"
 AIRY = "Born and Wolf 1999, 7.6.1"
-MASS = "mass law"
+MASS = "mass law, Fahy and Gardonio 2007"
 LONDON = "London 1950"
 LENS = "Pendry 2000"
 
@@ -30,7 +30,7 @@ def of_layers() -> list[Row]:
     out = []
     for before, middle, after, thickness in cases:
         frequency = 1500.0 if before == AIR else 1e6
-        name = f"{NAMES[middle]} {1e3 * thickness:g} mm, {NAMES[before]} to {NAMES[after]}"
+        name = f"{name_of(middle)} {1e3 * thickness:g} mm, {name_of(before)} to {name_of(after)}"
         for angle in (0.0, 12.0, 50.0):
             w, kx = lateral(before, frequency, angle)
             r, t = plane_wave(stack(before, [(middle, thickness)], after), frequency, angle=angle)

@@ -31,7 +31,7 @@ def of_air() -> list[Row]:
         out.append(Row(f"speed (m/s) in {name}", source, c, speed, printed(1e-5, speed)))
     air = bp.material("air", temperature=0.0, humidity=0.0).at(1000.0)
     c = math.sqrt((air.bulk_modulus / air.rho_z).real)
-    out.append(Row("speed (m/s) in dry air, 0 °C", "Cramer 1993", c, 331.45, printed(0.02, 331.45)))
+    out.append(Row("speed (m/s) in dry air, 0 °C", "Cramer 1993", c, 331.45, printed(0.01, 331.45)))
     f = 1000 * 10 ** (0.3 * np.arange(-4, 4))  # exact middles of the octaves
     for temperature, humidity, attenuations in published.ISO_ABSORPTION:
         air = bp.material("air", temperature=temperature, humidity=humidity, attenuation=True)
@@ -48,7 +48,7 @@ def of_water() -> list[Row]:
     out = []
     for temperature, density in published.WATER_DENSITY:
         ours = bp.material("water", temperature=temperature).at(1e6).rho_z.real
-        digit = printed(2e-4, density)  # Kell's fit is to the temperature scale of 1968, whose last digit is its own
+        digit = printed(1e-4, density)
         out.append(Row(f"density (kg/m3) of water, {temperature:g} °C", "Kell 1975", ours, density, digit))
     for temperature in (5.0, 20.0, 37.0, 60.0, 90.0):
         values = bp.material("water", temperature=temperature).at(1e6)
@@ -65,9 +65,9 @@ def of_water() -> list[Row]:
 
 
 def of_rods() -> list[Row]:
-    """Speeds in thin rods from the table's longitudinal and shear speeds: 0.7 % holds what three digits of each leave open."""
+    """Speeds in thin rods from the table's longitudinal and shear speeds: their columns agree to 0.7 %."""
     table = bp.materials()
-    sources = Tolerance(0.007, "printed digits of both speeds")
+    sources = Tolerance(0.007, "agreement of the source's columns")
     return [
         Row(
             f"speed (m/s) in a thin rod of {name}",

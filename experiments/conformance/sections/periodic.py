@@ -10,8 +10,8 @@ from scipy.optimize import brentq
 import beamprop as bp
 
 from ..formulas import periodic
-from ..records import Row, Section, rounding
-from .ask import AIR, HELIUM, NAMES, OIL, STEEL, WATER, fluid, lateral, plane_wave, stack
+from ..records import Row, Section, next_term, rounding
+from .ask import AIR, HELIUM, OIL, STEEL, WATER, fluid, lateral, name_of, plane_wave, stack
 
 RYTOV = "Rytov 1956"
 STACK = "Abelès 1950; Born and Wolf 1999, 1.6.5"
@@ -32,7 +32,7 @@ def of_bloch_waves() -> list[Row]:
             w, kx = lateral(first, times * frequency, angle)
             ours = cmath.cos(bp.bloch(period, times * frequency, kx=kx).kz.item() * period.thickness)
             exact = periodic.rytov_cosine(first, second, thicknesses, w, kx)
-            name = f"cos(kz P), {NAMES[first]} and {NAMES[second]}, {times * frequency / 1e3:g} kHz, {angle:g}°"
+            name = f"cos(kz P), {name_of(first)} and {name_of(second)}, {times * frequency / 1e3:g} kHz, {angle:g}°"
             out.append(Row(name, RYTOV, ours, exact, rounding(10), scale=max(1, abs(exact))))
     return out
 
@@ -46,7 +46,7 @@ def of_stacks() -> list[Row]:
             w, kx = lateral(first, frequency, angle)
             r, t = plane_wave(stack(first, layers, first, periods), frequency, angle=angle)
             exact_r, exact_t = periodic.stack(first, second, thicknesses, periods, first, w, kx)
-            name = f"{periods} periods of {NAMES[first]} and {NAMES[second]}, {angle:g}°"
+            name = f"{periods} periods of {name_of(first)} and {name_of(second)}, {angle:g}°"
             out.append(Row(f"r of {name}", STACK, r, exact_r, rounding(periods), scale=1))
             out.append(Row(f"t of {name}", STACK, t, exact_t, rounding(10 * periods)))
     return out
@@ -81,19 +81,20 @@ def of_quarter_waves() -> list[Row]:
 
 
 def of_fine_laminates() -> list[Row]:
-    """Thin layers are the mean medium: as the period falls tenfold the difference falls a hundredfold."""
+    """Mean media: of the package's effective fluid exactly, of a laminate a hundred times finer to the square of its phase."""
     out = []
-    for first, second, (d1, d2), frequency in PAIRS[1:]:
+    for first, second, thicknesses, frequency in PAIRS[1:]:
         w, kx = lateral(first, frequency, 30.0)
-        share = d1 / (d1 + d2), d2 / (d1 + d2)
-        rho = sum(s * f[0] for s, f in zip(share, (first, second), strict=True))
-        inverse = sum(s / f[0] for s, f in zip(share, (first, second), strict=True))
-        compliance = sum(s / (f[0] * f[1] ** 2) for s, f in zip(share, (first, second), strict=True))
-        exact = cmath.sqrt(rho * (w * w * compliance - kx * kx * inverse))
-        mean = bp.standard_emt(cell(first, second, (d1, d2)))
-        ours = bp.bloch(bp.Cell([bp.Layer(mean, d1 + d2)]), frequency, kx=kx).kz.item()
-        name = f"kz (1/m) of the mean medium of {NAMES[first]} and {NAMES[second]}, 30°"
-        out.append(Row(name, f"{RYTOV}, long waves", ours, exact, rounding(10)))
+        exact, phase = periodic.mean_medium(first, second, thicknesses, w, kx)
+        names = f"{name_of(first)} and {name_of(second)}, 30°"
+        mean = bp.Cell([bp.Layer(bp.standard_emt(cell(first, second, thicknesses)), sum(thicknesses))])
+        fine = cell(first, second, tuple(d / 100 for d in thicknesses))
+        for name, period, tolerance in (
+            (f"kz (1/m) of the mean medium of {names}", mean, rounding(10)),
+            (f"kz (1/m) of fine layers of {names}", fine, next_term((phase / 100) ** 2)),
+        ):
+            ours = bp.bloch(period, frequency, kx=kx).kz.item()
+            out.append(Row(name, f"{RYTOV}, long waves", ours, exact, tolerance))
     return out
 
 
