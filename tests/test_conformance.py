@@ -75,6 +75,7 @@ def test_what_is_no_number_does_not_hold(value):
     row = Row("p", "source", value, 1.0, rounding())
     assert row.share == math.inf
     assert not row.holds
+    assert page.row_text(row).endswith("| inf % |")
 
 
 def test_a_reference_of_zero_needs_a_scale():
@@ -164,6 +165,16 @@ def test_values_are_printed_alike_on_either_side_of_rounding(value, size, text):
 def test_rows_say_more_digits_where_the_difference_needs_them():
     row = Row("c", "s", 344.382665, 344.38267, Tolerance(1e-7, "printed digits"))
     assert "| 344.382665 | 344.382670 | 1.5e-08 |" in page.row_text(row)
+
+
+def test_what_changes_with_the_machine_is_printed_as_a_class():
+    """Rounding and a requested rtol, however large; other differences by their number, and any that is too large."""
+    row = Row("c", "s", 1 + 3e-7, 1.0, Tolerance(1e-6, "rounding", noise=True))
+    assert page.row_text(row).endswith("| 1.00000 | 1.00000 | < 1e-06 | 1.0e-06, rounding | < 100 % |")
+    assert page.row_text(replace(row, tolerance=Tolerance(1e-6, "next term"))).endswith(
+        "| 3.0e-07 | 1.0e-06, next term | 30 % |"
+    )
+    assert page.row_text(replace(row, ours=3.0)).endswith("| 2.0e+00 | 1.0e-06, rounding | 200000000 % |")
 
 
 # --- other programs ---------------------------------------------------------------------------------------

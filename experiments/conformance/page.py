@@ -9,15 +9,17 @@ from collections.abc import Iterable
 
 from .records import Row, Section
 
-#: Differences below this are rounding or what a contour leaves, and change with the machine and its libraries: only their class is printed.
-MOVES = 1e-8
 HEAD = "| quantity | source | beamprop | reference | difference | tolerance | share |\n|---|---|---|---|---|---|---|"
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]\d+)?")
 
 
-def digits_of(difference: float) -> int:
+def digits_of(row: Row) -> int:
     """Significant digits that show a difference which does not change with the machine: 6 to 9."""
-    return 6 if difference < MOVES else min(9, max(6, 2 - math.floor(math.log10(difference))))
+    return (
+        6
+        if row.moves or not math.isfinite(row.difference)
+        else min(9, max(6, 2 - math.floor(math.log10(row.difference))))
+    )
 
 
 def value_text(value: complex, size: float, digits: int) -> str:
@@ -38,37 +40,35 @@ def class_text(value: float, classes: Iterable[float], form: str) -> str:
     return "< " + form.format(next(c for c in classes if value < c))
 
 
-def difference_text(difference: float) -> str:
-    """Two digits, or a class."""
-    if difference < MOVES:
-        return class_text(difference, (1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9, MOVES), "{:.0e}")
-    return f"{difference:.1e}"
+def difference_text(row: Row) -> str:
+    """Two digits, or the decade of what changes with the machine."""
+    if row.moves and row.difference < 1:
+        return class_text(row.difference, (10.0**-n for n in range(14, -1, -1)), "{:.0e}")
+    return f"{row.difference:.1e}"
 
 
 def share_text(row: Row) -> str:
     """Whole percent; a class where the difference is printed as a class, or the share is small."""
     if row.refuted:
         return "does not hold"
-    if row.share < 0.01:
-        return "< 1 %"
-    if row.difference < MOVES and row.share <= 1:
-        return class_text(100 * row.share, (10, 101), "{} %").replace("101", "100")
+    if row.share < 0.01 or (row.moves and row.share <= 1):
+        return class_text(100 * row.share, (1, 10, 100.1), "{:.0f} %")
     return f"{100 * row.share:.0f} %"
 
 
 def row_text(row: Row) -> str:
     """A line of the table."""
     size = abs(row.reference) or row.scale
-    ours, reference = (value_text(v, size, digits_of(row.difference)) for v in (row.ours, row.reference))
+    ours, reference = (value_text(v, size, digits_of(row)) for v in (row.ours, row.reference))
     tolerance = f"{row.tolerance.value:.1e}, {row.tolerance.reason}"
-    cells = (row.quantity, row.source, ours, reference, difference_text(row.difference), tolerance, share_text(row))
+    cells = (row.quantity, row.source, ours, reference, difference_text(row), tolerance, share_text(row))
     return "| " + " | ".join(cells) + " |"
 
 
 def page_text(answers: list[tuple[Section, list[Row]]]) -> str:
     """All sections, after a table of how many rows each has."""
     rows = [row for _, part in answers for row in part]
-    nearest = max((row for row in rows if row.difference > MOVES and not row.refuted), key=lambda row: row.share)
+    nearest = max((row for row in rows if not row.moves and not row.refuted), key=lambda row: row.share)
     lines = ["| section | rows |", "|---|---|", *(f"| {section.title} | {len(part)} |" for section, part in answers)]
     refuted = sum(row.refuted for row in rows)
     lines += [

@@ -6,23 +6,30 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+#: Relative differences below this are noise whatever the tolerance.
+NOISE = 1e-8
+
 
 @dataclass(frozen=True)
 class Tolerance:
-    """What a difference may be, over the row's scale, and where that comes from."""
+    """What a difference may be, over the row's scale, and where that comes from.
+
+    Differences that are `noise` come from rounding, or from what a contour leaves: they change with the machine and its libraries.
+    """
 
     value: float
     reason: str
+    noise: bool = False
 
 
 def rounding(times: float = 1.0) -> Tolerance:
     """Both sides are exact but for double precision: a thousand units of its last place, times the condition of the question."""
-    return Tolerance(times * 1000 * 2.0**-52, "rounding")
+    return Tolerance(times * 1000 * 2.0**-52, "rounding", noise=True)
 
 
 def requested(rtol: float) -> Tolerance:
     """The question was asked with this rtol."""
-    return Tolerance(rtol, "rtol requested")
+    return Tolerance(rtol, "rtol requested", noise=True)
 
 
 def printed(digit: float, reference: complex) -> Tolerance:
@@ -61,6 +68,11 @@ class Row:
         """The difference over the tolerance; infinite where there is no number."""
         share = self.difference / self.tolerance.value
         return share if math.isfinite(share) else math.inf
+
+    @property
+    def moves(self) -> bool:
+        """Whether the difference changes with the machine."""
+        return self.tolerance.noise or self.difference < NOISE
 
     @property
     def holds(self) -> bool:

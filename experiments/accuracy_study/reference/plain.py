@@ -35,7 +35,7 @@ def open_field(
     medium = Medium(slab, frequency)
     kx, weight = bent_contour(medium.k0, **contour)
 
-    def response(k):
+    def response(k: np.ndarray) -> np.ndarray:
         return medium.response(k, np.asarray(z), z0)
 
     return field_sum(lambda k, kz: spectrum(k), response, kx, weight, None, np.asarray(x))

@@ -8,7 +8,7 @@ from protocol import Stack, answer
 from pymls import Layer, Solver, backing
 
 
-def medium(stack: Stack, layer):
+def medium(stack: Stack, layer: float | tuple[complex, complex, float]) -> tuple[object, float]:
     """A fluid, or the foam."""
     if isinstance(layer, float):
         return EqFluidJCA(**stack.foam), layer
