@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import beamprop as bp
 
+from .. import published
 from ..programs import live
-from ..programs.stacks import ANGLES, FOAM, PROGRAMS, PYMLS_GAS, STACKS, Stack, question
+from ..programs.stacks import ANGLES, FOAM, PROGRAMS, PYMLS_AIR, PYMLS_GAS, STACKS, Stack, question
 from ..records import Row, Section, rounding
 from .ask import plane_wave
 
@@ -19,7 +20,21 @@ def slab(stack: Stack) -> bp.Slab:
     return bp.Slab(layers, background=bp.Fluid(*stack.around))
 
 
-def rows() -> list[Row]:
+def of_planes() -> list[Row]:
+    """Foams in air by PLANES, as pymls' tests have it."""
+    out, air = [], bp.Fluid(*PYMLS_AIR)
+    foams = {name: bp.johnson_champoux_allard(*v, gas=bp.Gas(*PYMLS_GAS)) for name, v in published.PLANES_FOAMS.items()}
+    for (layers, angle, frequency), *theirs in published.PLANES:
+        structure = bp.Slab([bp.Layer(foams[name], d) for name, d in layers], background=air)
+        ours = plane_wave(structure, frequency, angle=angle)
+        names = " on ".join(f"{1e3 * d:g} mm of {name}" for name, d in layers)
+        for what, a, b in zip("rt", ours, theirs, strict=True):
+            place = f"{what} of {names}, {frequency:.0f} Hz, {angle:g}°"
+            out.append(Row(place, "PLANES, tables of pymls", a, b.conjugate(), rounding(10), scale=1))
+    return out
+
+
+def of_live_runs() -> list[Row]:
     """r and t of every question; each layer may round as both sides do."""
     out, stored = [], live.stored()
     for program in PROGRAMS.values():
@@ -36,9 +51,14 @@ def rows() -> list[Row]:
     return out
 
 
+def rows() -> list[Row]:
+    """Live runs and a printed table."""
+    return of_live_runs() + of_planes()
+
+
 SECTION = Section(
     "Other programs",
     "Plane waves through stacks of layers by programs from PyPI, each run in an environment of its own; the optical ones take pressure for "
-    "the magnetic field, relative density for permittivity and inverse relative modulus for permeability.",
+    "the magnetic field, relative density for permittivity and inverse relative modulus for permeability. The foams of the tables of pymls are in `experiments/conformance/published.py`.",
     rows,
 )
