@@ -171,10 +171,10 @@ def test_transmission_has_its_maxima_at_whole_half_waves():
 
 
 def test_the_design_distorts_less():
-    """A third of the distortion and of the change of width, by a slab that is nearer to matched."""
+    """Less than half the distortion and change of width, by a slab that is nearer to matched."""
     r = result_of("designed_profile")
     for name in ("distortion_percent", "width_change_percent"):
-        assert r[f"designed_{name}"] < r[f"paper_{name}"] / 3
+        assert r[f"designed_{name}"] < r[f"paper_{name}"] / 2
     assert abs(r["designed_density"] - 1) < abs(r["paper_density"] - 1)
 
 
