@@ -49,6 +49,7 @@ def study(quick=False):
         "design_khz": 2.5,
         "least_lossy_cm": 100 * float(widths["lossy"].fwhm_out.min()),
         "largest_lossy_cm": 100 * float(widths["lossy"].fwhm_out.max()),
+        "least_maximum": float(waves.energy_transmission.sel(frequency=peaks).min()),
         "largest_difference_hz": float(abs(peaks - predicted).max()),
         "waves": waves,
         "half_waves": xr.Dataset(coords={"frequency": predicted}),
