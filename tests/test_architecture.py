@@ -51,7 +51,7 @@ ONLY = {
     "io": {"memory", "validate", "media", "sources"},
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
     "comparison": {"validate", "sources", "profiles", "io", "api"},
-    "plot": {"validate", "io"},
+    "plot": {"validate", "media", "profiles", "io"},
     "parameters": {"memory", "validate", "media", "sources"},
     "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
 }

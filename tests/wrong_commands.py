@@ -59,7 +59,7 @@ WRONG = [
     ),
     ("field --form bent", "--form: expected 'launch' or 'rotated', got 'bent'"),
     ("field --width-of power", "--width-of: expected 'pressure' or 'intensity', got 'power'"),
-    ("field --quantity phase", "--quantity: expected 'abs' or 'real', got 'phase'"),
+    ("field --quantity angle", "--quantity: expected 'abs', 'real', 'phase', 'dB' or 'intensity', got 'angle'"),
     ("field --memory 1", "--memory: expected --output alone, for a map that is written and never held"),
     ("field --memory 0 -o a.nc", "--memory: expected a finite number above zero, got 0.0"),
     ("field --memory 1 -o a.nc --json", "--memory: expected --output alone, for a map that is written and never held"),

@@ -107,7 +107,13 @@ def beam_measures(**o: Any) -> None:
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )
 @option("--period", kind=LENGTH, text="Of the periodic array [m].")
-@option("--quantity", kind=words("abs", "real"), text="What --plot draws.", default="abs", shown="abs")
+@option(
+    "--quantity",
+    kind=words("abs", "real", "phase", "dB", "intensity"),
+    text="What --plot draws.",
+    default="abs",
+    shown="abs",
+)
 @option(
     "--variables",
     kind=NAMES,
