@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from .animate import animate as animate
 from .comparison import comparison as comparison
 from .curves import bloch as bloch
 from .curves import scattering as scattering
 from .curves import sweep as sweep
 from .curves import width as width
+from .cut import cut as cut
 from .field import field as field
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
