@@ -15,7 +15,7 @@ PUBLIC = {name: getattr(bp, name) for name in bp.__all__ if callable(getattr(bp,
 PUBLIC |= {f"fem.{name}": getattr(bp.fem, name) for name in ("field", "plan")}
 PUBLIC |= {
     f"plot.{name}": getattr(bp.plot, name)
-    for name in ("bloch", "comparison", "field", "modes", "scattering", "sweep", "width")
+    for name in ("animate", "bloch", "comparison", "cut", "field", "modes", "scattering", "sweep", "width")
 }
 PUBLIC |= {
     "Fluid.from_speed": bp.Fluid.from_speed,

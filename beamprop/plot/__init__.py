@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from .animate import animate as animate
 from .comparison import comparison as comparison
+from .cut import cut as cut
 from .field import field as field
 from .plane_waves import bloch as bloch
 from .plane_waves import modes as modes

@@ -60,34 +60,17 @@ def field(
     for name, value in (("colorbar", colorbar), ("half_level", half_level)):
         validate.flag(value, name)
     validate.word(quantity, "quantity", *QUANTITIES)
-    limit, floor = _scale(limit, floor)
+    limit, floor = maps.checked_scale(limit, floor)
     validate.instance(ds, xr.Dataset, "ds")
     names = variables(ds, quantity)
     labels.need(ds, *names, "x", "z")
     parts = maps.on_grid(ds, names)
     shown = drawn(parts, quantity, limit, floor)
     with style.drawing(ax, width) as axes:
-        across = width - maps.BESIDE if ax is None else axes.get_window_extent().width / axes.figure.dpi * style.INCH
-        mesh = maps.mesh_of(axes, parts[0], shown)
-        note = maps.shape(axes, parts[0], across)
-        maps.outline(axes, ds, across, shown.line)
+        maps.draw(axes, ds, parts[0], shown, width if ax is None else None, colorbar)
         if half_level:
             _draw_half_level(axes, maps.on_grid(ds, ("p",))[0], shown.line)
-        if colorbar:
-            maps.add_colorbar(axes, mesh, shown)
-        notes = [shown.note] * colorbar + [note]
-        axes.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))))
-        if ax is None:
-            maps.fit_height(axes.figure)
     return axes
-
-
-def _scale(limit: float | None, floor: float) -> tuple[float | None, float]:
-    """Both ends of a colour scale, checked."""
-    floor = validate.as_number(floor, "floor")
-    if floor >= 0:
-        raise validate.refuse("floor", "a level below zero [dB]", floor)
-    return None if limit is None else validate.as_number(limit, "limit", positive=True), floor
 
 
 def _draw_half_level(ax: Any, p: xr.DataArray, color: str) -> None:

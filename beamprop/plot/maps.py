@@ -6,11 +6,13 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
+from .. import validate
 from ..io.datasets import provenance
 from ..media.structures import Slab
-from . import units
+from . import labels, units
 from .quantities import Drawn
 from .style import INCH
 
@@ -50,33 +52,56 @@ def slab_of(ds: xr.Dataset) -> Slab | None:
     return slab if isinstance(slab, Slab) else None
 
 
+def checked_scale(limit: float | None, floor: float) -> tuple[float | None, float]:
+    """Both ends of a colour scale, checked."""
+    floor = validate.as_number(floor, "floor")
+    if floor >= 0:
+        raise validate.refuse("floor", "a level below zero [dB]", floor)
+    return None if limit is None else validate.as_number(limit, "limit", positive=True), floor
+
+
+def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | None, colorbar: bool = True) -> Any:
+    """The map of `shown`, which is on the grid of p, with all that belongs to it; its mesh. `width` [mm] is that of a new figure."""
+    across = ax.get_window_extent().width / ax.figure.dpi * INCH if width is None else width - BESIDE
+    mesh = _mesh(ax, p, shown)
+    note = _shape(ax, p, across)
+    outline(ax, ds, across, shown.line)
+    if colorbar:
+        _add_colorbar(ax, mesh, shown)
+    notes = [shown.note] * colorbar + [note]
+    ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))))
+    if width is not None:
+        _fit_height(ax.figure)
+    return mesh
+
+
 # --- proportion -------------------------------------------------------------------------------------------
 
 
-def span(p: xr.DataArray) -> tuple[float, float]:
+def _span(p: xr.DataArray) -> tuple[float, float]:
     """What a map spans along z and x [m], with half a step at each end."""
     return tuple(float(np.ptp(v) * (1 + 1 / (v.size - 1))) for v in (p["z"].values, p["x"].values))  # type: ignore[return-value]
 
 
-def proportion(p: xr.DataArray, across: float) -> float | None:
+def _proportion(p: xr.DataArray, across: float) -> float | None:
     """Height over width in true proportion of a map `across` mm wide, or None where that would be a stripe."""
-    along_z, along_x = span(p)
+    along_z, along_x = _span(p)
     ratio = along_x / along_z
     return ratio if LOWEST / across <= ratio <= STEEPEST else None
 
 
-def shape(ax: Any, p: xr.DataArray, across: float) -> str:
+def _shape(ax: Any, p: xr.DataArray, across: float) -> str:
     """Give Axes the proportion of their map; a note where it is not the true one."""
-    if proportion(p, across) is not None:
+    if _proportion(p, across) is not None:
         ax.set_aspect("equal")
         return ""
-    along_z, along_x = span(p)
+    along_z, along_x = _span(p)
     ax.set_aspect("auto")
     ax.set_box_aspect(BROAD if along_x < along_z else STEEP)
     return "x and z not to scale"
 
 
-def fit_height(figure: Any) -> None:
+def _fit_height(figure: Any) -> None:
     """Make a figure as high as what is on it, where that has the figure's width."""
     width, _ = figure.get_size_inches()
     most = min(HIGHEST * width, PAGE_HEIGHT / INCH)
@@ -89,7 +114,7 @@ def fit_height(figure: Any) -> None:
 # --- on the map -------------------------------------------------------------------------------------------
 
 
-def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
+def _mesh(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
     """The map's cells, each about its point."""
     mesh = ax.pcolormesh(
         p["z"].values,
@@ -106,13 +131,16 @@ def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
     return mesh
 
 
-def add_colorbar(ax: Any, mesh: Any, shown: Drawn) -> Any:
+def _add_colorbar(ax: Any, mesh: Any, shown: Drawn) -> Any:
     """A colour bar exactly as high as the map, beside it whatever the layout."""
     inches = ax.figure.dpi_scale_trans + ScaledTranslation(1, 0, ax.transAxes)
     place = ax.inset_axes([GAP / INCH, 0, BAR / INCH, 1], transform=blended_transform_factory(inches, ax.transAxes))
-    bar = ax.figure.colorbar(mesh, cax=place, extend=shown.extend, label=shown.label)
+    bar = ax.figure.colorbar(mesh, cax=place, extend=shown.extend)
+    units.name_axis(bar.ax.yaxis, shown.name, (shown.low, shown.high), shown.unit)
     if shown.cmap == "twilight":
         bar.set_ticks([-180, -90, 0, 90, 180])
+    else:
+        bar.locator = MaxNLocator(6, steps=[1, 2, 5, 10])
     return bar
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from .units import number, quantity
+from .units import joined, number, quantity, scale
 
 #: The words of `quantity`.
 QUANTITIES = ("abs", "real", "phase", "dB", "intensity")
@@ -18,20 +18,23 @@ SILENT = -400.0
 
 
 class Drawn(NamedTuple):
-    """Values, the colour map and both ends of its scale, their label, and the colour of lines that are seen on the map."""
+    """Values, what they are called, the ends of the colour scale, and how far the values go (of a film, at any time)."""
 
     values: np.ndarray
-    cmap: str
+    name: str
+    unit: str
     low: float
     high: float
-    label: str
-    line: str = "white"
+    least: float
+    most: float
+    cmap: str = "inferno"
+    line: str = "white"  #: colour of lines that are seen on the map
 
     @property
     def beyond(self) -> tuple[bool, bool]:
         """Whether values lie below and above the scale, by more than rounding."""
-        finite, room = self.values[np.isfinite(self.values)], 1e-9 * (self.high - self.low)
-        return bool(np.any(finite < self.low - room)), bool(np.any(finite > self.high + room))
+        room = 1e-9 * (self.high - self.low)
+        return self.least < self.low - room, self.most > self.high + room
 
     @property
     def extend(self) -> str:
@@ -43,12 +46,15 @@ class Drawn(NamedTuple):
     def note(self) -> str:
         """How far the values go where the colours end, or ''."""
         below, above = self.beyond
-        least = float(np.nanmin(self.values, initial=np.inf))
-        lower = "−∞" if least <= SILENT else number(float(f"{least:.3g}"))
-        upper = number(float(f"{np.nanmax(self.values, initial=-np.inf):.3g}"))
+        unit, factor = scale(self.unit, (self.low, self.high))
+        lower, upper = (number(float(f"{value * factor:.3g}")) for value in (self.least, self.most))
+        if self.least <= SILENT and below:
+            lower = "−∞"
         if below and above:
-            return f"values from {lower} to {upper}"
-        return f"values down to {lower}" if below else f"values up to {upper}" if above else ""
+            return f"values from {lower} to {joined(upper, unit)}"
+        return (
+            f"values down to {joined(lower, unit)}" if below else f"values up to {joined(upper, unit)}" if above else ""
+        )
 
 
 def variables(ds: xr.Dataset, what: str) -> tuple[str, ...]:
@@ -70,24 +76,25 @@ def drawn(parts: tuple[xr.DataArray, ...], what: str, limit: float | None = None
         The least level [dB].
     """
     p, unit = parts[0].values, parts[0].attrs.get("units", "")
-    size = np.hypot(*(np.abs(part.values) for part in parts)) if len(parts) > 1 else np.abs(p)
+    size = np.hypot(*(part.values for part in parts)) if len(parts) > 1 else np.abs(p)
     finite = size[np.isfinite(size)]
     if what == "phase":
-        return Drawn(np.degrees(np.angle(p)), "twilight", -180.0, 180.0, "phase [°]", "black")
+        return Drawn(np.degrees(np.angle(p)), "phase", "degree", -180.0, 180.0, -180.0, 180.0, "twilight", "black")
     if what == "dB":
         top = limit or float(np.max(finite, initial=0.0)) or 1.0
         with np.errstate(divide="ignore"):
-            level = np.fmax(20 * np.log10(size / top), np.where(np.isnan(size), np.nan, SILENT))
+            level = np.maximum(20 * np.log10(size / top), SILENT)
         of = "max" if limit is None else quantity(limit, unit)
-        return Drawn(level, "inferno", floor, 0.0, f"|p| [dB re {of}]")
+        return Drawn(level, "|p|", f"dB re {of}", floor, 0.0, *_ends(level))
     top = limit or (float(np.percentile(finite, HELD)) if finite.size else 0.0) or 1.0
     if what == "real":
-        return Drawn(p.real, "cividis", -top, top, labelled("Re p", unit), "black")
+        return Drawn(p.real, "Re p", unit, -top, top, *_ends(p.real), "cividis", "black")
     if what == "intensity" and len(parts) == 1:
-        return Drawn(size**2, "inferno", 0.0, top**2, labelled("|p|²", unit and f"{unit}²"))
-    return Drawn(size, "inferno", 0.0, top, labelled("|p|" if len(parts) == 1 else "|I|", unit.replace("^2", "²")))
+        return Drawn(size**2, "|p|²", unit and f"{unit}²", 0.0, top**2, *_ends(size**2))
+    return Drawn(size, "|p|" if len(parts) == 1 else "|I|", unit, 0.0, top, *_ends(size))
 
 
-def labelled(name: str, unit: str) -> str:
-    """A name with its unit, if it has one."""
-    return name if unit in ("", "1") else f"{name} [{unit}]"
+def _ends(values: np.ndarray) -> tuple[float, float]:
+    """The least and the largest finite value; of none, 0."""
+    finite = values[np.isfinite(values)]
+    return (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
