@@ -53,7 +53,7 @@ ONLY = {
     "comparison": {"validate", "sources", "profiles", "io", "api"},
     "plot": {"validate", "media", "profiles", "io"},
     "parameters": {"memory", "validate", "media", "sources"},
-    "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
+    "study": {"memory", "validate", "progress", "media", "io", "api", "plot", "parameters"},
 }
 
 
