@@ -65,9 +65,9 @@ def _warnings_on_lines() -> Iterator[None]:
         try:
             yield
         finally:
-            for w in caught:
-                if not issubclass(w.category, DeprecationWarning):
-                    click.echo(f"warning: {in_options(str(w.message))}", err=True)
+            said = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning)]
+            for message in dict.fromkeys(said):  # a question and its picture may warn of the same
+                click.echo(f"warning: {in_options(message)}", err=True)
 
 
 def check_text(values: float) -> None:

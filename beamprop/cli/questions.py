@@ -111,7 +111,7 @@ def beam_measures(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @launch("-0.1, 0.73 wavelengths")
 @axis("x", "Lateral positions [m], an axis.", "-0.7:0.7:561, 5.1 wavelengths to both sides")
-@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab")
+@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab, on faces of cells")
 @option(
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )
@@ -122,6 +122,9 @@ def beam_measures(**o: Any) -> None:
     kind=NAMES,
     text="Of the dataset, with commas between: p, v_x, v_z, intensity, power_through.",
     shown="p",
+)
+@option(
+    "--average", kind=words("cell"), text="Mean over a cell about each plane, inside of which the pressure ripples."
 )
 @option(
     "--memory",

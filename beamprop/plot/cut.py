@@ -78,6 +78,7 @@ def cut(
             axes.plot(at, _unbroken(values) if quantity == "phase" else values, label=name or None)
         _name(axes, along, at, shown, quantity)
         if along == "z":
+            maps.warn_of_grid(ds, at)
             maps.outline(axes, ds, axes.get_window_extent().width / axes.figure.dpi * style.INCH, "0.4")
         axes.set_title(labels.where(ds))
         if len(places) > 1 or label:

@@ -50,6 +50,11 @@ def field(
     -------
     Axes
 
+    Warns
+    -----
+    HintWarning
+        The planes skip through the cells of the slab: the map shows stripes that are not there. See `beamprop.faces`.
+
     Examples
     --------
     >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)

@@ -11,6 +11,7 @@ from matplotlib.transforms import ScaledTranslation, blended_transform_factory
 
 from .. import validate
 from ..io.datasets import provenance
+from ..media.planes import warn_of_stripes
 from ..media.structures import Slab
 from . import labels, units
 from .quantities import Drawn
@@ -63,6 +64,7 @@ def checked_scale(limit: float | None, floor: float) -> tuple[float | None, floa
 def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | None, colorbar: bool = True) -> Any:
     """The map of `shown`, which is on the grid of p, with all that belongs to it; its mesh. `width` [mm] is that of a new figure."""
     across = ax.get_window_extent().width / ax.figure.dpi * INCH if width is None else width - BESIDE
+    warn_of_grid(ds, p["z"].values)
     mesh = _mesh(ax, p, shown)
     note = _shape(ax, p, across)
     outline(ax, ds, across, shown.line)
@@ -73,6 +75,13 @@ def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | 
     if width is not None:
         _fit_height(ax.figure)
     return mesh
+
+
+def warn_of_grid(ds: xr.Dataset, z: np.ndarray) -> None:
+    """A hint that the planes of a field skip through the cells of its slab, unless they are means over a cell."""
+    slab = slab_of(ds)
+    if slab is not None and "frequency" in ds.coords and "average" not in ds.attrs:
+        warn_of_stripes(slab, z, np.atleast_1d(np.asarray(ds["frequency"].values, float)))
 
 
 # --- proportion -------------------------------------------------------------------------------------------
