@@ -65,7 +65,7 @@ def test_a_legend_of_many_curves_fits():
         ax.figure.clear()
 
 
-@pytest.mark.parametrize(("scale", "unit"), [(1.0, "m"), (1e-3, "mm"), (1e-6, "um")])
+@pytest.mark.parametrize(("scale", "unit"), [(1.0, "m"), (1e-3, "mm"), (1e-6, "µm")])
 def test_small_maps_are_told_in_small_units(scale, unit):
     """On the same data, in m."""
     at = np.linspace(0, scale, 11)

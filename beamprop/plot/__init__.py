@@ -16,6 +16,7 @@ from .curves import sweep as sweep
 from .curves import width as width
 from .cut import cut as cut
 from .field import field as field
+from .quantities import QUANTITIES as QUANTITIES
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
 STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))
