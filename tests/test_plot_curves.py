@@ -134,6 +134,16 @@ def test_zero_has_the_lowest_colour_of_a_logarithmic_map_and_nan_none():
     assert colours[1, 1, 3] == 1
 
 
+def test_a_clipped_scale_is_in_the_unit_of_what_it_shows():
+    """Not in that of the resonance that it does not show."""
+    ds = made("frequency", "kx_over_k0")
+    ds.transmissivity[3, 3] = 4e8
+    ax = bp.plot.scattering(ds)
+    assert ax.figure.axes[1].get_ylabel().replace("\n", " ") == "transmissivity |t|²; largest 4e08"
+    small = made("eta", "frequency", eta=np.array([0.001, 0.0025]))
+    assert [line.get_label() for line in bp.plot.sweep(small).lines] == ["eta = 0.001", "eta = 0.0025"]
+
+
 def test_axes_of_even_ratios_are_logarithmic():
     axis = made("frequency", frequency=np.geomspace(5e4, 5e5, 12))
     ax = bp.plot.sweep(axis)
