@@ -158,6 +158,23 @@ def test_a_beam_is_shifted_as_artmann_says():
     assert r["narrow_critical"] < r["wide_critical"] < 6
 
 
+def test_a_beam_is_shifted_as_a_sum_of_plane_waves_is():
+    """At the critical angle, where Artmann's formula is infinite: the centroid of a plain sum over kx."""
+    import goos_haenchen as shift
+
+    k0, width = 2 * np.pi, 100.0  # lengths in wavelengths
+    kx = k0 * np.sin(np.radians(shift.CRITICAL))
+    k = np.linspace(kx - 0.2, min(kx + 0.2, k0), 4001)
+    inside = np.emath.sqrt((k0 * np.sin(np.radians(shift.CRITICAL))) ** 2 - k**2 + 0j)
+    front = 1900.0 / shift.WATER.at(shift.FREQUENCY).rho_z.real * np.sqrt(k0**2 - k**2)
+    waves = np.exp(-((k - kx) ** 2) * width**2 / (16 * np.log(2))) * (front - inside) / (front + inside)
+    x = np.linspace(-200, 350, 1101)  # the head wave trails behind
+    p = np.array([abs(np.trapezoid(waves * np.exp(1j * k * place), k)) for place in x])
+    bright = p > 0.01 * p.max()
+    centroid = (x * p**2)[bright].sum() / (p**2)[bright].sum()
+    assert result_of("goos_haenchen")["wide_critical"] == pytest.approx(centroid, rel=2e-3)
+
+
 def lens_transmission(kx, k0, loss, thickness):
     """p behind a lens over p in front, from the sums of waves in three layers: nothing of the package."""
     outside, inside = (np.emath.sqrt(k2 - kx**2 + 0j) for k2 in (k0**2, k0**2 * (-1 + 1j * loss) / (-1 - 1j * loss)))
