@@ -18,7 +18,7 @@ def need(ds: xr.Dataset, *names: str) -> None:
         raise ValueError(f"ds: expected a dataset with {', '.join(names)}, got one without {', '.join(missing)}")
 
 
-def word(value: Any, name: str) -> str | None:
+def text_or_none(value: Any, name: str) -> str | None:
     """A word, or None."""
     if value is not None and not isinstance(value, str):
         raise validate.refuse(name, "a word", value)

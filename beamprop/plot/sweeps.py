@@ -56,7 +56,7 @@ def width(
     >>> ax = bp.plot.width(ds)
     """
     labels.need(ds, *WIDTHS)
-    labels.word(label, "label")
+    labels.text_or_none(label, "label")
     behind = ds["fwhm_out"].squeeze(drop=True).assign_attrs(units="m", long_name="full width behind the slab")
     chosen = spread.axis_along(behind, along, "frequency", "angle")
     plan = spread.plan(behind, chosen, spread.MOST // len(WIDTHS))
@@ -147,7 +147,7 @@ def sweep(
     >>> ax = bp.plot.sweep(ds, "transmissivity", band="sample")
     """
     labels.need(ds)
-    name = labels.word(quantity, "quantity") or str(next(iter(ds.data_vars), "a variable"))
+    name = labels.text_or_none(quantity, "quantity") or str(next(iter(ds.data_vars), "a variable"))
     labels.need(ds, name)
     validate.flag(log, "log")
     v = ds[name].squeeze(drop=True)
@@ -164,7 +164,7 @@ def _band(
     v: xr.DataArray, along: str | None, band: str, percentiles: tuple[float, float], log: bool, where: tuple[Any, float]
 ) -> Any:
     """Medians, and the ranges between two percentiles, along a dimension."""
-    if labels.word(band, "band") not in v.dims:
+    if labels.text_or_none(band, "band") not in v.dims:
         raise validate.refuse("band", " or ".join(map(str, v.dims)) or "none, for there is one value", band)
     low, high = _pair(percentiles)
     chosen = spread.axis_along(v.isel({band: 0}, drop=True), along)
