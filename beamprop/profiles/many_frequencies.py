@@ -6,7 +6,6 @@ exact sum over the plane waves. A second contour of other parameters gives the e
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -17,8 +16,7 @@ from ..contour import near_normal, paths, sums
 from ..contour.error import MARGIN, uniform_budget
 from ..contour.paths import Contour, Extent, StraightPlan
 from ..contour.stationary_phase import TransferToPlane, landing
-from ..modes import misplaced
-from ..response.sampled_slab import SampledSlab
+from ..modes.misplaced import any_misplaced
 from ..sources.base import Beam
 from .fwhm import Evaluate, full_width
 from .routes import Measures, Route, measures_of
@@ -149,7 +147,7 @@ def measured_together(
     for route, part in zip(routes, np.split(np.arange(rows.k0.size), len(routes)), strict=True):
         if route.guided:
             calm = near_normal.is_calm(h_near[part], max(0.01 * rtol, 1e-12))[:, 0]
-            good[part] &= calm & ~_backward(route.slab, StraightPlan(*(v[part] for v in plan)))
+            good[part] &= calm & ~any_misplaced(route.slab, 1.1 * plan.sigma[part], plan.band[part])
     return [
         (measures_of(v), g) for v, g in zip(np.split(table, len(routes), -1), np.split(good, len(routes)), strict=True)
     ]
@@ -169,17 +167,6 @@ def _parted(routes: Sequence[Route], beam: Beam, rtol: float, level: float) -> l
 def _taken(route: Route, rows: np.ndarray) -> Route:
     """The route at the frequencies with those indices."""
     return route._replace(slab=route.slab.take(rows), z=route.z[rows], path=route.path[rows])
-
-
-def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
-    """Where the contours leave a guided mode on their wrong side, (F,)."""
-    wrong = misplaced.any_misplaced(s, 1.1 * plan.sigma, plan.band)
-    for i in np.flatnonzero(wrong) if s.lossless else []:  # what was counted may be forward
-        slab = s.take(int(i))
-        start = min(1e-3 * slab.k0, 0.1 * slab.nearest_branch)
-        poles = misplaced.misplaced(slab, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
-        wrong[i] = bool(poles.poles) or math.isfinite(poles.crossing)
-    return wrong
 
 
 def _sampled(plane_waves: PlaneWaves, plan: StraightPlan) -> tuple[np.ndarray, np.ndarray]:
