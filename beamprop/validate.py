@@ -94,6 +94,8 @@ def numeric(value: Any, name: str, expected: str = "a number or an array of numb
 def _scalar(value: Any, name: str, expected: str) -> complex | float:
     if type(value) in (float, complex):  # of the many layers of a slab; everything else is looked at closely
         return value
+    if type(value) in (np.float64, np.complex128):
+        return value.item()
     array = numeric(value, name, expected)
     if array.ndim:
         raise refuse(name, expected, value)

@@ -83,4 +83,5 @@ def lmmd_cell(
     thickness = eta * 2 * np.pi / k0 / n_layers
     validate.within(thickness, "eta")
     warn_of_eta(eta)
-    return Cell(tuple(Layer(Fluid(rho, complex(values.bulk_modulus)), thickness) for rho in density))
+    bulk_modulus = complex(values.bulk_modulus)
+    return Cell(tuple(Layer(Fluid(rho, bulk_modulus), thickness) for rho in density.tolist()))

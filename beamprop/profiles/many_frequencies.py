@@ -17,7 +17,7 @@ from ..contour.error import MARGIN, uniform_budget
 from ..contour.paths import Contour, Extent, StraightPlan
 from ..contour.stationary_phase import TransferToPlane, landing
 from ..modes.misplaced import any_misplaced
-from ..sources.base import Beam
+from ..sources.rows import RowBeam, repeated, taken
 from .fwhm import Evaluate, full_width
 from .routes import Measures, Route, measures_of
 from .windows import EDGE
@@ -80,7 +80,7 @@ def _side_by_side(routes: Sequence[Route]) -> _Rows:
     return _Rows(k0, branch, path, plane if len(routes) > 1 else planes[0], any(route.guided for route in routes))
 
 
-def _both_contours(rows: _Rows, beam: Beam, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves, np.ndarray]:
+def _both_contours(rows: _Rows, beam: RowBeam, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves, np.ndarray]:
     """The plane waves at the plane, on a contour and on a second one for the error, and H near kx = 0; one response for all."""
     contours = paths.straight_contour(plan), paths.straight_contour(plan.second_plan())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
@@ -94,7 +94,7 @@ def _both_contours(rows: _Rows, beam: Beam, plan: StraightPlan) -> tuple[PlaneWa
     return first, second, h_near
 
 
-def _plan(rows: _Rows, beam: Beam, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
+def _plan(rows: _Rows, beam: RowBeam, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
     lo, hi = beam.band(rows.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
     farthest = np.abs(middle - beam.centre) + half
     extent = Extent(rows.k0, rows.branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), rows.path)
@@ -116,7 +116,7 @@ FEW = 8
 
 @np.errstate(over="ignore", invalid="ignore")  # rows that are not finite are not trusted
 def measured_together(
-    routes: Sequence[Route], beam: Beam, rtol: float, level: float
+    routes: Sequence[Route], beam: RowBeam, rtol: float, level: float
 ) -> list[tuple[Measures, np.ndarray]]:
     """Of each route measures at all frequencies, (F,) each, and which of them can be trusted, (F,).
 
@@ -128,20 +128,22 @@ def measured_together(
         return [_nothing(count)] * len(routes)
     if len(routes) > 1 and count > FEW:
         return _parted(routes, beam, rtol, level)
-    rows = _side_by_side(routes)
-    middle, half = landing(rows.k0, beam, rows.plane, rows.path)
-    plan = _plan(rows, beam, middle, half, rtol)
+    rows, each = _side_by_side(routes), repeated(beam, len(routes))
+    middle, half = landing(rows.k0, each, rows.plane, rows.path)
+    plan = _plan(rows, each, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
     many = rows.k0.size * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER
     if len(routes) > 1 and (many or size >= MOST_OF_A_FREQUENCY):
         return _parted(routes, beam, rtol, level)
     if count > 1 and many:
-        halves = [_taken(routes[0], part) for part in np.array_split(np.arange(count), 2)]
-        (low, good_low), (high, good_high) = _parted(halves, beam, rtol, level)
+        (low, good_low), (high, good_high) = (
+            measured_together([_taken(routes[0], part)], taken(beam, part), rtol, level)[0]
+            for part in np.array_split(np.arange(count), 2)
+        )
         return [(measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high]))]
     if size >= MOST_OF_A_FREQUENCY:
         return [_nothing(count)]
-    first, second, h_near = _both_contours(rows, beam, plan)
+    first, second, h_near = _both_contours(rows, each, plan)
     measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)
     table = measures._replace(centroid=measures.centroid + beam.centre).table
     for route, part in zip(routes, np.split(np.arange(rows.k0.size), len(routes)), strict=True):
@@ -159,7 +161,7 @@ def _nothing(count: int) -> tuple[Measures, np.ndarray]:
     return Measures(unknown, unknown, unknown, unknown, uniform_budget(count, np.nan)), np.zeros(count, bool)
 
 
-def _parted(routes: Sequence[Route], beam: Beam, rtol: float, level: float) -> list[tuple[Measures, np.ndarray]]:
+def _parted(routes: Sequence[Route], beam: RowBeam, rtol: float, level: float) -> list[tuple[Measures, np.ndarray]]:
     """Routes one by one."""
     return [measured for route in routes for measured in measured_together([route], beam, rtol, level)]
 
