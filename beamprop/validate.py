@@ -160,6 +160,10 @@ def within(values: Any, name: str, *, zero: bool = False) -> None:
 
 def axis(value: Any, name: str, *, kind: type = float, positive: bool = False) -> np.ndarray:
     """A scalar or 1-D array of finite numbers, as an array of `kind`: float, or complex."""
+    if (
+        type(value) is float and (value > 0 or not positive) and (is_usual(value) or value == 0)
+    ):  # of the many points of a study
+        return np.array(value, kind)
     array = numeric(value, name, "a number or a 1-D array of numbers")
     if np.iscomplexobj(array) and kind is not complex:
         raise refuse(name, "real numbers", _Said("complex ones"))
