@@ -99,13 +99,13 @@ def row(name: str, workers: int, points: int, took: tuple[float, float], store: 
 
 def study_row(
     name: str, question: Callable, axes: dict[str, np.ndarray], points: int, workers: int
-) -> tuple[str, float]:
-    """A line of the table, and points per second."""
+) -> tuple[str, tuple[float, float]]:
+    """A line of the table, and `times_of` the study."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.zarr"
         took = times_of(lambda: bp.sweep(question, axes, store=path, workers=workers, progress=False))
         size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file())
-    return row(name, workers, points, took, f"{size / 1e6:.1f} MB"), points / took[0]
+    return row(name, workers, points, took, f"{size / 1e6:.1f} MB"), took
 
 
 def own_costs() -> list[str]:
@@ -156,15 +156,18 @@ def report(points: int, count: int) -> str:
     for name, work, workers in (("plain loop", loop, 1), ("xarray and dask by hand", by_hand, 2)):
         took = times_of(lambda work=work: done.append(work(axes, count)))  # type: ignore[misc]
         lines.append(row(name, workers, done[-1], took))
-    speeds = {}
+    times = {}
     for name, question, over in (("sweep", width, axes), ("sweep, frequencies together", together(frequencies), rest)):
         for workers in (1, 2):
-            line, speeds[name, workers] = study_row(name, question, over, size, workers)
+            line, times[name, workers] = study_row(name, question, over, size, workers)
             lines.append(line)
-    ratios = ", ".join(f"{speeds[n, 2] / speeds[n, 1]:.2f} ({n})" for n in dict.fromkeys(name for name, _ in speeds))
+    names = list(dict.fromkeys(name for name, _ in times))
+    ratios = ", ".join(f"{times[n, 1][0] / times[n, 2][0]:.2f} ({n})" for n in names)
+    alone = ", ".join(f"{times[n, 2][1] / 2:.0f} s ({n})" for n in names)
     peak = {who: resource.getrusage(kind).ru_maxrss / 1024 for who, kind in (("main", 0), ("workers", -1))}
     lines += [
         "",
+        f"{size} points on two cores that nobody else uses, by processor time: {alone}",
         f"two workers over one: {ratios}; largest memory {peak['main']:.0f} MB here, {peak['workers']:.0f} MB in a worker",
     ]
     return "\n".join([*lines, *own_costs()])
