@@ -80,7 +80,7 @@ def commands():
 @pytest.fixture
 def inputs(scratch):
     """The files that commands read."""
-    for name in ("beam.nc", "comsol_export.txt", "study.toml"):
+    for name in ("beam.nc", "comsol_export.txt", "study.toml", "angles.toml"):
         (scratch / name).touch()
     return scratch
 
