@@ -1,0 +1,53 @@
+"""The site: ``sphinx-build -W -b html docs build/site`` makes it from these pages, with the extra ``docs`` installed."""
+
+from __future__ import annotations
+
+import logging
+import re
+import sys
+from pathlib import Path
+
+CHECKOUT = Path(__file__).parents[1]
+# The checkout's package, whatever is installed; scripts of the gallery import what the experiments share.
+sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "experiments")]
+
+import beamprop  # noqa: E402
+
+project = "beamprop"
+author = "The beamprop developers"
+release = version = beamprop.__version__
+copyright = f"{author}, MIT licence"
+
+extensions = ["myst_parser", "sphinx.ext.autosummary", "numpydoc"]
+exclude_patterns = ["templates"]
+templates_path = ["templates"]
+# A contents list may name pages that a checkout does not have; Sphinx 9 gives this warning no type by which it could be suppressed.
+logging.getLogger("sphinx.sphinx.directives.other").addFilter(lambda record: "glob pattern" not in str(record.msg))
+
+myst_enable_extensions = ["colon_fence"]
+myst_heading_anchors = 3  # links to headings are those of the repository's own view
+
+# Single backticks in docstrings are names: a link where it is a public one, plain code elsewhere.
+default_role = "py:obj"
+autodoc_typehints = "none"  # the docstrings tell types, shapes and units
+autosummary_imported_members = True
+numpydoc_show_class_members = False
+
+html_theme = "furo"  # 0.1 MB, light and dark, and no request to any other server
+html_title = f"beamprop {release}"
+html_static_path = ["static"]
+html_css_files = ["site.css"]
+html_copy_source = False
+html_show_sphinx = False
+
+#: Bars of an absolute value, |p|, outside of a literal: reStructuredText takes them for a substitution.
+_BAR = re.compile(r"(``[^`]*``|`[^`]*`)|\|")
+
+
+def _with_plain_bars(_app, _what, _name, _object, _options, lines) -> None:
+    lines[:] = [_BAR.sub(lambda m: m[1] or r"\|", line) if not line.startswith(">>>") else line for line in lines]
+
+
+def setup(app) -> None:
+    """Sphinx's hook."""
+    app.connect("autodoc-process-docstring", _with_plain_bars, priority=400)
