@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from . import lengths
+from . import units
 
 _WIDTH = 7.1  # inches, two columns of a journal
 
@@ -102,13 +102,13 @@ def _maps(ds: xr.Dataset, axes: Sequence[Any]) -> None:
             rasterized=True,
         )
         ax.set_aspect(aspect)
-        lengths.name_length(ax.xaxis, "z", ds.z.values)
+        units.name_axis(ax.xaxis, "z", ds.z.values, "m")
         bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([0, 1.04, 1, 0.05]), orientation="horizontal")
         bar.ax.xaxis.set_ticks_position("top")
         bar.ax.xaxis.set_label_position("top")
         bar.ax.locator_params(nbins=4)
         bar.set_label(f"{title} [{scaled}]")
-    lengths.name_length(axes[0].yaxis, "x", ds.x.values)
+    units.name_axis(axes[0].yaxis, "x", ds.x.values, "m")
     for ax in axes[1:]:
         ax.tick_params(labelleft=False)
 
@@ -133,7 +133,7 @@ def _errors(ds: xr.Dataset, ax: Any) -> None:
         ax.set_ylim(0, 1.1 * max(np.nanmax(values, initial=0.0), overall) or 1.0)
         ax.ticklabel_format(axis="y", scilimits=(-2, 3), useMathText=True)
     ax.set_ylabel("relative L2 error")
-    lengths.name_length(ax.xaxis, "z", ds.z.values)
+    units.name_axis(ax.xaxis, "z", ds.z.values, "m")
     ax.grid(True, color="0.9", lw=0.5)
 
 
@@ -145,7 +145,7 @@ def _widths(ds: xr.Dataset, ax: Any) -> None:
     _curve(ax, ds.z.values, values * factor, "C0")
     ax.axhline(0, color="0.5", lw=0.8)
     ax.set_ylabel(f"width of b less a [{unit}]")
-    lengths.name_length(ax.xaxis, "z", ds.z.values)
+    units.name_axis(ax.xaxis, "z", ds.z.values, "m")
     ax.grid(True, color="0.9", lw=0.5)
     if not np.any(np.isfinite(values)):
         ax.text(0.5, 0.5, "half level not reached", transform=ax.transAxes, ha="center", va="center", color="0.4")
