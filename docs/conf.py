@@ -1,4 +1,7 @@
-"""The site: ``sphinx-build -W -b html docs build/site`` makes it from these pages, with the extra ``docs`` installed."""
+"""The site: ``sphinx-build -W -b html docs build/site`` makes it from these pages, with the extra ``docs`` installed.
+
+The scripts of the gallery run at full size, in a few minutes; with BEAMPROP_QUICK=1 in the environment, at a reduced one.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,9 @@ import sys
 from pathlib import Path
 
 CHECKOUT = Path(__file__).parents[1]
-# The checkout's package, whatever is installed; scripts of the gallery import what the experiments share.
-sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "experiments")]
+GALLERY = CHECKOUT / "experiments" / "gallery"
+# The checkout's package, whatever is installed; what the scripts of the gallery share.
+sys.path[:0] = [str(CHECKOUT), str(GALLERY), str(CHECKOUT / "docs")]
 
 import beamprop  # noqa: E402
 
@@ -18,7 +22,7 @@ author = "The beamprop developers"
 release = version = beamprop.__version__
 copyright = f"{author}, MIT licence"
 
-extensions = ["myst_parser", "sphinx.ext.autosummary", "numpydoc"]
+extensions = ["myst_parser", "sphinx.ext.autosummary", "numpydoc", "sphinx_gallery.gen_gallery"]
 exclude_patterns = ["templates"]
 templates_path = ["templates"]
 # A contents list may name pages that a checkout does not have; Sphinx 9 gives this warning no type by which it could be suppressed.
@@ -32,6 +36,20 @@ default_role = "py:obj"
 autodoc_typehints = "none"  # the docstrings tell types, shapes and units
 autosummary_imported_members = True
 numpydoc_show_class_members = False
+
+sphinx_gallery_conf = {
+    "examples_dirs": str(GALLERY),
+    "gallery_dirs": "gallery",
+    "filename_pattern": ".*",
+    "ignore_pattern": "gallery_main",
+    "reset_argv": "site_arguments.of_gallery",
+    "image_srcset": ["2x"],
+    "thumbnail_size": (560, 200),
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "abort_on_example_error": True,
+}
 
 html_theme = "furo"  # 0.1 MB, light and dark, and no request to any other server
 html_title = f"beamprop {release}"

@@ -121,7 +121,8 @@ class Page(HTMLParser):
             self.links.append(given["href"])
         elif tag == "link" and given.get("rel") not in ("next", "prev", "index", "search"):
             self.loads.append(given["href"])
-        self.loads += [given[name] for name in ("src", "srcset", "poster", "data") if given.get(name) and tag != "a"]
+        self.loads += [given[name] for name in ("src", "poster", "data") if given.get(name)]
+        self.loads += [candidate.split()[0] for candidate in (given.get("srcset") or "").split(",") if candidate]
         self.without_alt += tag == "img" and "alt" not in given
 
 
