@@ -69,7 +69,7 @@ def commands():
     found = []
     for page in PAGES:
         for _, text in blocks(page, "sh"):
-            for line in text.splitlines():
+            for line in text.replace("\\\n", " ").splitlines():
                 for part in line.split("&&"):
                     words = shlex.split(part, comments=True)
                     if words and Path(words[0]).name == "beamprop":
