@@ -33,6 +33,7 @@ myst_heading_anchors = 3  # links to headings are those of the repository's own 
 
 # Single backticks in docstrings are names: a link where it is a public one, plain code elsewhere.
 default_role = "py:obj"
+smartquotes = False  # what is typed has straight ones
 autodoc_typehints = "none"  # the docstrings tell types, shapes and units
 autosummary_imported_members = True
 numpydoc_show_class_members = False
@@ -56,6 +57,7 @@ html_title = f"beamprop {release}"
 html_static_path = ["static"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_show_search_summary = False  # which browsers refuse to fetch from files
 html_show_sphinx = False
 
 #: Bars of an absolute value, |p|, outside of a literal: reStructuredText takes them for a substitution.
