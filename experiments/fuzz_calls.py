@@ -177,7 +177,13 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"quantity": lambda r: "absorption", "log": draw_flag, "label": lambda r: "a"},
     ),
     "plot.bloch": (bp.plot.bloch, {"ds": draw_answer}, {"imaginary": draw_flag, "mirror": draw_flag}),
-    "plot.width": (bp.plot.width, {"ds": draw_answer}, {"label": lambda r: "a"}),
+    "plot.width": (bp.plot.width, {"ds": draw_answer}, {"label": lambda r: "a", "along": lambda r: "angle"}),
+    "plot.modes": (bp.plot.modes, {"ds": draw_answer}, {"label": lambda r: "a"}),
+    "plot.sweep": (
+        bp.plot.sweep,
+        {"ds": draw_answer},
+        {"log": draw_flag, "along": lambda r: "x", "band": lambda r: "frequency", "percentiles": lambda r: (10, 90)},
+    ),
     "plot.comparison": (bp.plot.comparison, {"cmp_ds": draw_answer}, {}),
     "fem.plan": (
         bp.fem.plan,

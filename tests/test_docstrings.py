@@ -14,7 +14,8 @@ import beamprop as bp
 PUBLIC = {name: getattr(bp, name) for name in bp.__all__ if callable(getattr(bp, name))}
 PUBLIC |= {f"fem.{name}": getattr(bp.fem, name) for name in ("field", "plan")}
 PUBLIC |= {
-    f"plot.{name}": getattr(bp.plot, name) for name in ("bloch", "comparison", "field", "scattering", "sweep", "width")
+    f"plot.{name}": getattr(bp.plot, name)
+    for name in ("animate", "bloch", "comparison", "cut", "field", "modes", "scattering", "sweep", "width")
 }
 PUBLIC |= {
     "Fluid.from_speed": bp.Fluid.from_speed,

@@ -98,7 +98,10 @@ def test_curves_differ_in_grey():
         ("Hz", 2500.0, ("Hz", 1.0)),
         ("Hz", [1e4, 9e5], ("kHz", 1e-3)),
         ("Hz", 1e6, ("MHz", 1e-6)),
-        ("degree", 1e9, ("degree", 1.0)),
+        ("degree", 1e9, ("°", 1.0)),
+        ("Pa", 3e-9, ("10⁻⁹ Pa", 1e9)),
+        ("Pa²", 2e4, ("10³ Pa²", 1e-3)),
+        ("W/m^2", 0.5, ("W/m²", 1.0)),
     ],
 )
 def test_units_by_size(unit, values, expected):

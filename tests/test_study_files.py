@@ -277,15 +277,27 @@ def test_the_time_of_a_long_question_is_measured_in_part(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("name = 'guided_modes'", "output.plot: expected a question that is drawn"),
+        ("name = 'beam_measures'", "output.plot: expected an axis for frequency or angle, got one value"),
+        (
+            "name = 'scattering'\nangle = [0, 1]\n[output]\nquantity = 'p'",
+            "output.quantity: expected 'transmissivity' or 'reflectivity'",
+        ),
+        (
+            "name = 'scattering'\nangle = [0, 1]\n[output]\nalong = 'frequency'",
+            "output.along: expected angle, got 'frequency'",
+        ),
         ("name = 'field'\nfrequency = [1000, 2000]", "output.plot: expected one frequency and one angle"),
         (
             "name = 'beam_width'\nfrequency = 2500",
             "output.plot: expected an axis for frequency or angle, got one value",
         ),
         (
-            "name = 'scattering'\nangle = [0, 1]\n[sweep]\nslab.eta = [1, 2]\nslab.periods = [1, 2]",
-            "on one or two axes",
+            "name = 'scattering'\nangle = '0:1:9'\n[sweep]\nslab.eta = '1/60:1/50:9'\nslab.periods = [1,2,3,4,5,6,7,8,9]",
+            "output.plot: expected at most 8 curves or panels beside eta, got periods 9, angle 9",
+        ),
+        (
+            "name = 'scattering'\nangle = 0\n[sweep]\nslab.eta = ['1/9', '1/8']\n[output]\nband = 'sample'",
+            "output.band: expected eta, got 'sample'",
         ),
         (
             "name = 'scattering'\nangle = 0\n[sweep]\nslab.eta = ['1/9', '1/8']\n[output]\nquantity = 'q'",

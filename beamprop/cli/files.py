@@ -45,11 +45,9 @@ def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any,
         return ds
 
     def draw(ds: xr.Dataset) -> Any:
-        import numpy as np
-
         from .. import plot
 
-        return np.atleast_1d(plot.comparison(ds))[0]
+        return plot.comparison(ds)
 
     if o["output"] and any(source.resolve() == o["output"].resolve() for source in (a, b)):
         raise click.UsageError(f"--output: expected a file other than those compared, got {str(o['output'])!r}")

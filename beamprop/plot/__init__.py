@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from .animate import animate as animate
 from .comparison import comparison as comparison
-from .curves import bloch as bloch
-from .curves import scattering as scattering
-from .curves import sweep as sweep
-from .curves import width as width
+from .cut import cut as cut
 from .field import field as field
+from .plane_waves import bloch as bloch
+from .plane_waves import modes as modes
+from .plane_waves import scattering as scattering
+from .sweeps import sweep as sweep
+from .sweeps import width as width
 
 #: Line styles by turn, as in the paper: solid, dashed, dash-dotted, dash-dot-dotted.
 STYLES: tuple[Any, ...] = ("-", "--", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)))

@@ -8,65 +8,84 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from . import labels, style, units
+from ..profiles.fwhm import of_samples
+from . import labels, maps, style
+from .quantities import QUANTITIES, drawn, variables
 
 
 def field(
-    ds: xr.Dataset, quantity: str = "abs", ax: Any = None, colorbar: bool = True, limit: float | None = None
+    ds: xr.Dataset,
+    quantity: str = "abs",
+    ax: Any = None,
+    colorbar: bool = True,
+    limit: float | None = None,
+    *,
+    floor: float = -40.0,
+    half_level: bool = False,
+    width: float = style.COLUMN,
 ) -> Any:
-    """Map of a field on (z, x), with the slab's faces as dashed lines.
+    """Map of a field on (z, x), with the slab's faces as dashed lines and its layers, where there is room, as thin ones.
 
     Parameters
     ----------
     ds : Dataset
         From `beamprop.field` at one frequency and angle.
-    quantity : "abs" or "real"
-        |p|, or Re p.
+    quantity : "abs", "real", "phase", "dB" or "intensity"
+        \\|p\\|; Re p on a symmetric scale; the phase on a cyclic one; the level of \\|p\\| over its largest; \\|p\\|^2, or the size of the
+        time-averaged intensity where the dataset holds intensity_x and intensity_z.
     ax : Axes, optional
+        By default those of a new figure, as high as the map in true proportion takes.
     colorbar : bool
     limit : float, optional
-        The colour scale's end [Pa]; the 99.8th percentile of |p| by default.
+        The colour scale's end: \\|p\\| [Pa], or the intensity [W/m^2]; what a level is over. By default the 99.8th percentile, of
+        a level the largest. Where values go beyond the colours, the colour bar has a tip and the title says how far.
+    floor : float, dB
+        The least level.
+    half_level : bool
+        Draw where \\|p\\| is half its largest at each z, as lines along z.
+    width : float, mm
+        Of a new figure: 88 is one column of a journal, 180 is two.
 
     Returns
     -------
     Axes
 
+    Warns
+    -----
+    HintWarning
+        The planes skip through the cells of the slab: the map shows stripes that are not there. See `beamprop.faces`.
+
     Examples
     --------
     >>> slab, beam = bp.Slab(bp.lmmd_cell(), periods=20), bp.GaussianBeam(0.096)
-    >>> ds = bp.field(slab, beam, 2500.0, x=np.linspace(-0.5, 0.5, 101), z=np.linspace(0, 0.3, 61))
-    >>> ax = bp.plot.field(ds, quantity="real")
-    >>> ax.figure.savefig("field.png")
+    >>> ds = bp.field(slab, beam, 2500.0, x=np.linspace(-0.2, 0.2, 101), z=slab.cell.thickness * np.arange(60))
+    >>> ax = bp.plot.field(ds, quantity="real", half_level=True)
+    >>> ax.figure.savefig("field.svg")
     """
-    labels.need(ds, "p", "x", "z")
-    validate.flag(colorbar, "colorbar")
-    if limit is not None:
-        limit = validate.as_number(limit, "limit", positive=True)
-    validate.word(quantity, "quantity", "abs", "real")
-    p = ds["p"].squeeze(drop=True)
-    if set(p.dims) != {"z", "x"}:
-        raise ValueError(
-            f"ds: expected a field on (z, x); select one of {', '.join(set(map(str, p.dims)) - {'z', 'x'})}"
-        )
-    p = p.transpose("x", "z")
-    ax = style.new_figure(180.0, 107.0).add_subplot() if ax is None else ax
-    values = np.abs(p.values) if quantity == "abs" else p.values.real
-    top = limit or float(np.percentile(np.abs(p.values), 99.8)) or 1.0
-    scale = (
-        {"cmap": "inferno", "vmin": 0, "vmax": top}
-        if quantity == "abs"
-        else {"cmap": "RdBu_r", "vmin": -top, "vmax": top}
-    )
-    mesh = ax.pcolormesh(p["z"].values, p["x"].values, values, shading="nearest", rasterized=True, **scale)
-    edge = "white" if quantity == "abs" else "black"
-    for face in (0.0, ds.attrs.get("slab_thickness")):
-        if face is not None and p["z"].min() <= face <= p["z"].max():
-            ax.axvline(face, color=edge, ls="--", lw=0.8)
-    ax.set_aspect("equal")
-    for axis, name in ((ax.xaxis, "z"), (ax.yaxis, "x")):
-        units.name_axis(axis, name, [np.abs(p[n]).max() for n in ("z", "x")], "m")
-    if colorbar:
-        text = {"abs": "|p| [Pa]", "real": "Re p [Pa]"}[quantity]
-        ax.figure.colorbar(mesh, ax=ax, label=text, shrink=0.8)
-    ax.set_title(labels.where(ds), fontsize="medium")
-    return ax
+    for name, value in (("colorbar", colorbar), ("half_level", half_level)):
+        validate.flag(value, name)
+    validate.word(quantity, "quantity", *QUANTITIES)
+    limit, floor = maps.checked_scale(limit, floor)
+    validate.instance(ds, xr.Dataset, "ds")
+    names = variables(ds, quantity)
+    labels.need(ds, *names, "x", "z")
+    parts = maps.on_grid(ds, names)
+    shown = drawn(parts, quantity, limit, floor)
+    with style.drawing(ax, width) as axes:
+        maps.draw(axes, ds, parts[0], shown, width if ax is None else None, colorbar)
+        if half_level:
+            _draw_half_level(axes, maps.on_grid(ds, ("p",))[0], shown.line)
+    return axes
+
+
+def _draw_half_level(ax: Any, p: xr.DataArray, color: str) -> None:
+    """Both edges of |p| at half its largest on each plane that has values everywhere."""
+    if p.sizes["x"] < 4:
+        raise ValueError(f"ds: expected at least 4 samples along x for half_level, got {p.sizes['x']}")
+    rows = p.transpose("z", "x").values
+    edges = np.full((2, len(rows)), np.nan)
+    whole = np.all(np.isfinite(rows), axis=1)
+    widths = of_samples(p["x"].values, rows[whole])
+    edges[:, whole] = widths.left, widths.right
+    for edge in edges:
+        ax.plot(p["z"].values, edge, color=color, ls="-", lw=0.8)

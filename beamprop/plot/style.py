@@ -22,7 +22,8 @@ COLUMN, PAGE = 88.0, 180.0
 NARROWEST = 40.0
 #: Height over width of a figure of curves.
 PROPORTION = 0.65
-_INCH = 25.4
+#: [mm].
+INCH = 25.4
 
 
 @functools.cache
@@ -52,7 +53,7 @@ def new_figure(width: float, height: float | None = None) -> Any:
     width = validate.as_number(width, "width", positive=True)
     if width < NARROWEST:
         raise ValueError(f"width: expected at least {NARROWEST:g} mm, got {width:g}: 88 is one column, 180 is two")
-    size = (width / _INCH, (height or PROPORTION * width) / _INCH)
+    size = (width / INCH, (height or PROPORTION * width) / INCH)
     with mpl.rc_context(settings()):
         return plt.figure(FigureClass=PaperFigure, figsize=size, layout="constrained")
 
@@ -78,6 +79,6 @@ def drawing(ax: Any, width: float, height: float | None = None) -> Iterator[Any]
     """
     if ax is not None and not hasattr(ax, "pcolormesh"):
         raise validate.refuse("ax", "Axes of matplotlib", ax)
-    figure = new_figure(width, height) if ax is None else ax.figure
+    figure = new_figure(width, height) if ax is None else ax.get_figure(root=True)
     with mpl.rc_context(settings()) if isinstance(figure, PaperFigure) else nullcontext():
         yield figure.add_subplot() if ax is None else ax

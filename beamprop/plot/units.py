@@ -1,7 +1,11 @@
-"""Units by size: positions in m, mm or µm, frequencies in Hz, kHz or MHz. Data stay in SI; labels and ticks are scaled."""
+"""Units by size: positions in m, mm or µm, frequencies in Hz, kHz or MHz, pressures in MPa to µPa, powers of ten of all else.
+
+Data stay in SI; labels and ticks are scaled.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,8 +13,12 @@ import numpy as np
 #: Of an SI unit: (from this size on, name, factor to it).
 SCALES: dict[str, tuple[tuple[float, str, float], ...]] = {
     "m": ((0.1, "m", 1.0), (1e-4, "mm", 1e3), (0.0, "µm", 1e6)),
+    "Pa": ((1e6, "MPa", 1e-6), (1e3, "kPa", 1e-3), (0.1, "Pa", 1.0), (1e-4, "mPa", 1e3), (1e-8, "µPa", 1e6)),
     "Hz": ((1e6, "MHz", 1e-6), (1e4, "kHz", 1e-3), (0.0, "Hz", 1.0)),
 }
+#: Units that are written as they are, whatever the size; and from where to where numbers of all others are.
+UNSCALED, PLAIN = ("degree",), (1e-2, 1e4)
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def scale(unit: str, values: Any) -> tuple[str, float]:
@@ -18,14 +26,19 @@ def scale(unit: str, values: Any) -> tuple[str, float]:
 
     Examples
     --------
-    >>> scale("m", [0.0, -0.02]), scale("Hz", 2500.0), scale("1", 3.0)
-    (('mm', 1000.0), ('Hz', 1.0), ('1', 1.0))
+    >>> scale("m", [0.0, -0.02]), scale("Hz", 2500.0), scale("W/m^2", 2e-7)
+    (('mm', 1000.0), ('Hz', 1.0), ('10⁻⁹ W/m²', 1000000000.0))
     """
     sizes = np.abs(np.asarray(values, float))
     largest = float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
-    if largest == 0.0 or unit not in SCALES:
-        return unit, 1.0
-    return next((name, factor) for least, name, factor in SCALES[unit] if largest >= least)
+    for least, name, factor in SCALES.get(unit, ()) if largest else ():
+        if largest >= least:
+            return name, factor
+    plain = "°" if unit == "degree" else "" if unit == "1" else unit.replace("^2", "²")
+    if largest == 0.0 or unit in UNSCALED or PLAIN[0] <= largest < PLAIN[1]:
+        return plain, 1.0
+    power = 3 * math.floor(math.log10(largest) / 3)
+    return f"10{str(power).translate(_SUPERSCRIPTS)} {plain}".strip(), 10.0**-power
 
 
 def number(value: float) -> str:
@@ -44,15 +57,16 @@ def quantity(value: float, unit: str) -> str:
 
     Examples
     --------
-    >>> quantity(2.5e5, "Hz"), quantity(45.0, "degree"), quantity(3.0, "1")
-    ('250 kHz', '45°', '3')
+    >>> quantity(2.5e5, "Hz"), quantity(45.0, "degree"), quantity(3.0, "1"), quantity(2e6, "W/m^2")
+    ('250 kHz', '45°', '3', '2·10⁶ W/m²')
     """
-    if unit in ("", "1"):
-        return number(value)
-    if unit == "degree":
-        return f"{number(value)}°"
     name, factor = scale(unit, value)
-    return f"{number(value * factor)} {name}"
+    return joined(number(value * factor), name)
+
+
+def joined(written: str, name: str) -> str:
+    """A number that is written already, and the name of its unit."""
+    return f"{written}{'·' if name.startswith('10') else '' if name in ('', '°') else ' '}{name}"
 
 
 def name_axis(axis: Any, label: str, values: Any, unit: str) -> None:
@@ -67,6 +81,6 @@ def name_axis(axis: Any, label: str, values: Any, unit: str) -> None:
     ('z [mm]', '10')
     """
     name, factor = scale(unit, values)
-    axis.set_label_text(label if unit in ("", "1") else f"{label} [{'°' if name == 'degree' else name}]")
+    axis.set_label_text(f"{label} [{name}]" if name else label)
     if factor != 1.0:
         axis.set_major_formatter(lambda v, _: number(v * factor))
