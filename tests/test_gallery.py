@@ -6,6 +6,7 @@ import re
 from functools import cache
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 from source_tree import CHECKOUT
 
@@ -15,10 +16,26 @@ STATED = {
     "lateral_shift": "layers thickness_m fwhm_cm frequency_hz largest_centroid_mm largest_angle straight_ray_m least_width_cm "
     "largest_width_cm wide_fwhm_cm wide_angle wide_centroid_mm stationary_phase_mm",
     "layers_per_cell": "multiple_0 multiple_1 multiple_2 multiple_3 multiple_4 fwhm_cm least_multiple_width_cm periods first last "
-    "least_width_cm largest_width_cm pressure_ratio mean_density numerator mean_density inverse_density_12 twelve "
-    "inverse_density_10 ten",
+    "least_width_cm largest_width_cm pressure_ratio mean_density inverse_density_12 spreading inverse_density_10 guiding",
     "two_slits": "periods separation_mm frequency_hz between_41_percent shorter_periods between_20_percent air_mm air_width_mm "
     "half_wave_periods between_lossy_percent",
+    "fabrication": "deviation_percent periods phase_rad copies fwhm_cm width_spread_cm perfect_width_cm largest_density mean_density "
+    "layers mean_error effective_phase_rad",
+    "effective_media": "first last without_median_percent with_median_percent without_worst_percent with_worst_percent "
+    "standard_median_percent",
+    "goos_haenchen": "critical_angle frequency_khz wide wide_beyond angle_beyond artmann_beyond wide_critical narrow_critical narrow",
+    "superlens": "sign limit_0.01 loss limit_0.1 loss_high pendry_0.01 pendry_0.1 between_0.001_percent loss_low between_0.1_percent "
+    "loss_high",
+    "fabry_perot": "periods maxima least_khz largest_khz peak_hz predicted_hz order fwhm_cm least_width_cm largest_width_cm "
+    "lossy_percent design_khz least_lossy_cm largest_lossy_cm",
+    "designed_profile": "mean paper_mean fwhm_cm periods paper_distortion_percent designed_distortion_percent least_khz largest_khz "
+    "paper_width_change_percent designed_width_change_percent paper_density design_khz designed_density matched",
+    "matching_layers": "centre_mhz none_percent ceramic_mrayl one_half_mhz closed_form_mhz two_half_mhz share_percent one_80_mhz "
+    "two_80_mhz",
+    "defect_state": "centre_mhz gap_mhz closed_form_gap_mhz periods peak_percent centre_mhz quality sharpening "
+    "impedance_ratio_squared",
+    "double_wall": "leaf_kg depth_cm resonance_hz formula_hz oblique_hz oblique_angle at_hz double_db single_db half_wave_hz "
+    "half_wave_db wool_db",
 }
 #: A number in a text, with its sign; none of a name such as kx2.
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w])")
@@ -35,6 +52,7 @@ def text_of(name):
     title, underline, text = docstring.split("\n", 2)
     assert len(underline) >= len(title)
     assert set(underline) == {"="}
+    assert len(re.findall(r"\.(?=\s|$)", text)) == 2, "a finding has two sentences"
     return text
 
 
@@ -96,3 +114,85 @@ def test_two_slits_are_imaged_where_the_slab_is_half_a_wave():
     assert abs(r["half_wave_periods"] - r["periods"]) < 0.5
     gap = r["gaps"].no
     assert gap.idxmin() == r["periods"]
+
+
+def test_phases_spread_as_the_effective_medium_says():
+    """Forty copies know their rms to 11 %."""
+    r = result_of("fabrication")
+    assert r["phase_rad"] == pytest.approx(r["effective_phase_rad"], rel=0.25)
+
+
+def test_the_interface_term_mends_the_effective_medium():
+    """At every number of periods, by half or more."""
+    errors = result_of("effective_media")["errors"]
+    assert bool((errors["with"] < errors["without"] / 2).all())
+    assert bool((errors["without"] < 0.2).all())
+
+
+def test_a_beam_is_shifted_as_artmann_says():
+    r = result_of("goos_haenchen")
+    assert r["wide_beyond"] == pytest.approx(r["artmann_beyond"], rel=0.01)
+    assert r["narrow_critical"] < r["wide_critical"] < 6
+
+
+def lens_transmission(kx, k0, loss, thickness):
+    """p behind a lens over p in front, from the sums of waves in three layers: nothing of the package."""
+    outside, inside = (np.emath.sqrt(k2 - kx**2 + 0j) for k2 in (k0**2, k0**2 * (-1 + 1j * loss) / (-1 - 1j * loss)))
+    inside = np.where(inside.imag < 0, -inside, inside)
+    ratio = outside * (-1 + 1j * loss) / inside
+    step = np.exp(1j * inside * thickness)
+    return 4 * ratio * step / ((1 + ratio) ** 2 - (1 - ratio) ** 2 * step**2)
+
+
+def test_the_lens_images_two_slits():
+    """The pressure between the images against a plain Fourier integral over kx; the transfer against Pendry's limit."""
+    import superlens as lens
+
+    r, k0 = result_of("superlens"), 2 * np.pi / lens.WAVELENGTH
+    kx = np.linspace(0, 30 * k0, 60001)
+    for loss in (0.1, 0.01):
+        t = lens_transmission(kx, k0, loss, lens.THICKNESS) * np.exp(
+            1j * np.emath.sqrt(k0**2 - kx**2 + 0j) * lens.THICKNESS
+        )
+        spectrum = np.sinc(kx * lens.APART / 20 / np.pi) * np.cos(kx * lens.APART / 2)
+        x = r["images"].x.values
+        p = np.abs([np.trapezoid(t * spectrum * np.cos(kx * place), kx) for place in x])
+        between = 100 * p[x.size // 2] / p.max()
+        assert r[f"between_{loss:g}_percent"] == pytest.approx(between, abs=0.05)
+        assert r[f"limit_{loss:g}"] == pytest.approx(r[f"pendry_{loss:g}"], rel=0.02)
+    assert r["between_lens_percent"] == pytest.approx(100, abs=1e-3)
+
+
+def test_transmission_has_its_maxima_at_whole_half_waves():
+    """To a hertz, within which the frequencies of the curve lie."""
+    r = result_of("fabry_perot")
+    assert r["largest_difference_hz"] < 1
+    assert float(r["waves"].energy_transmission.max()) == pytest.approx(1, abs=1e-4)
+
+
+def test_the_design_distorts_less():
+    """A third of the distortion and of the change of width, by a slab that is nearer to matched."""
+    r = result_of("designed_profile")
+    for name in ("distortion_percent", "width_change_percent"):
+        assert r[f"designed_{name}"] < r[f"paper_{name}"] / 3
+    assert abs(r["designed_density"] - 1) < abs(r["paper_density"] - 1)
+
+
+def test_one_quarter_wave_layer_has_the_band_of_its_closed_form():
+    r = result_of("matching_layers")
+    assert r["one_half_mhz"] == pytest.approx(r["closed_form_mhz"], abs=2e-3)
+    assert r["one_centre_percent"] == pytest.approx(100)
+
+
+def test_the_gap_and_its_defect_follow_the_impedances():
+    r = result_of("defect_state")
+    assert r["gap_mhz"] == pytest.approx(r["closed_form_gap_mhz"], abs=1e-3)
+    assert r["sharpening"] == pytest.approx(r["impedance_ratio_squared"], rel=1e-3)
+
+
+def test_the_double_wall_follows_its_closed_form():
+    """At every frequency of the curve; the single leaf follows the mass law."""
+    r = result_of("double_wall")
+    assert r["largest_difference_db"] < 1e-6
+    assert r["single_db"] == pytest.approx(r["mass_law_db"], abs=1e-9)
+    assert max(r["resonance_db"], r["oblique_db"], r["half_wave_db"]) < 1e-6

@@ -4,8 +4,8 @@ Four layers a cell, and every multiple of four, break the guide
 
 Cells of 4, 8, 12, 16 or 20 layers widen a 9.6 cm beam to 71 cm or more behind 450 periods; with any other number from 5 to 19 it
 comes out between 9.6 and 12.5 cm wide, with at least 4.9 times the pressure.
-Where N is a multiple of four, two layers of the cell have a cosine of zero and the small mean density 0.05 alone. The mean inverse
-density, which lets waves run sideways, is then 2/(0.05 N): 3.33 at 12 layers, where it is -0.00007 at 10.
+Where the number is a multiple of four, two layers of the cell have a cosine of zero and the small mean density 0.05 alone, so that
+the mean inverse density, which lets waves run sideways, is 3.33 at 12 layers, where it is -0.00007 at 10.
 """
 
 import numpy as np
@@ -47,11 +47,10 @@ def study(quick=False):
         "pressure_ratio": float(rest.peak_out.min() / multiple.peak_out.max()),
         "mean_density": MEAN,
         "inverse_density_12": mean_inverse_density(12).real,
-        "numerator": 2,
-        "closed_form_12": 2 / (12 * MEAN),
-        "twelve": 12,
-        "ten": 10,
+        "spreading": 12,
         "inverse_density_10": mean_inverse_density(10).real,
+        "guiding": 10,
+        "closed_form_12": 2 / (12 * MEAN),
         "widths": widths,
         **contours,
     }

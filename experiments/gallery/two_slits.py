@@ -5,7 +5,7 @@ Two slits a tenth of a wavelength apart, imaged
 Behind 41 lossless periods two slits 13.7 mm apart, a tenth of the wavelength at 2500 Hz, are two peaks with 2 % of their pressure
 between them; behind 20 periods 90 % is left there, and 94 mm of air, as much, makes one peak of them, 224 mm wide.
 The slab has to be whole half-waves thick: kz hardly depends on kx, so that kz L = pi, at 41.1 periods by the effective medium,
-passes all plane waves alike, evanescent ones too. The paper's loss leaves 21 % between the peaks.
+passes all plane waves alike, evanescent ones too, and with the paper's loss still leaves 21 % between the peaks.
 """
 
 import numpy as np
