@@ -184,7 +184,19 @@ def test_scripts_that_are_called_exist():
 
 @pytest.mark.parametrize(
     "name",
-    ["accuracy", "limit", "statements", "benchmarks", "shares", "steps", "materials", "point", "kills", "sweep"],
+    [
+        "accuracy",
+        "limit",
+        "statements",
+        "benchmarks",
+        "shares",
+        "steps",
+        "materials",
+        "point",
+        "kills",
+        "sweep",
+        "conformance",
+    ],
 )
 def test_tables_are_filled_by_their_name(name, tmp_path):
     """Each table has one place; what is written there is the table, and nothing else of any page changes."""
