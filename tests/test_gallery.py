@@ -3,12 +3,16 @@
 import ast
 import importlib
 import re
+import runpy
+import sys
 from functools import cache
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from source_tree import CHECKOUT
+
+import beamprop as bp
 
 GALLERY = CHECKOUT / "experiments" / "gallery"
 #: The numbers of each page in the order of its text, by their names in the result of `study`.
@@ -32,8 +36,8 @@ STATED = {
     "paper_width_change_percent designed_width_change_percent paper_density design_khz designed_density matched",
     "matching_layers": "centre_mhz none_percent ceramic_mrayl one_half_mhz closed_form_mhz two_half_mhz share_percent one_80_mhz "
     "two_80_mhz",
-    "defect_state": "centre_mhz gap_mhz closed_form_gap_mhz periods peak_percent centre_mhz quality sharpening "
-    "impedance_ratio_squared",
+    "defect_state": "centre_mhz gap_mhz closed_form_gap_mhz periods peak_percent centre_mhz quality most_pairs sharpening "
+    "pairs_before impedance_ratio_squared",
     "double_wall": "leaf_kg depth_cm resonance_hz formula_hz oblique_hz oblique_angle at_hz double_db single_db half_wave_hz "
     "half_wave_db wool_db",
 }
@@ -76,6 +80,25 @@ def test_numbers_of_a_page_are_its_results(name):
     result = result_of(name)
     computed = [rounded_as(text, result[key]) for text, key in zip(numbers, names, strict=True)]
     assert dict(zip(names, computed, strict=True)) == dict(zip(names, map(float, numbers), strict=True))
+
+
+def test_a_number_that_is_not_so_is_seen():
+    """By its last digit, with its sign, in either form."""
+    assert [rounded_as(*case) for case in (("0.013", 0.01349), ("-2", -2.4), ("3.0e-4", 2.96e-4))] == [0.013, -2, 3e-4]
+    assert rounded_as("0.013", 0.01351) != 0.013
+    assert NUMBER.findall("of 9.6 cm, -1 and 3e-4, kx2 at 80.") == ["9.6", "-1", "3e-4", "80"]
+
+
+def test_a_script_prints_and_writes(tmp_path, monkeypatch, capsys):
+    """As a user runs it: numbers, a picture, and data that `load` reads."""
+    monkeypatch.setattr(
+        sys, "argv", ["matching_layers.py", "--quick", "--width", "88", "--output", str(tmp_path / "out")]
+    )
+    runpy.run_path(str(GALLERY / "matching_layers.py"), run_name="__main__")
+    assert "two_half_mhz = 0.93\n" in capsys.readouterr().out
+    assert plt.imread(tmp_path / "out" / "matching_layers.png").shape[1] == pytest.approx(88 / 25.4 * 300, abs=1)
+    assert bp.load(tmp_path / "out" / "matching_layers_shares.nc").sizes == {"frequency": 1601}
+    plt.close("all")
 
 
 @pytest.mark.parametrize("width", [88, 180])
@@ -135,6 +158,23 @@ def test_a_beam_is_shifted_as_artmann_says():
     assert r["narrow_critical"] < r["wide_critical"] < 6
 
 
+def test_a_beam_is_shifted_as_a_sum_of_plane_waves_is():
+    """At the critical angle, where Artmann's formula is infinite: the centroid of a plain sum over kx."""
+    import goos_haenchen as shift
+
+    k0, width = 2 * np.pi, 100.0  # lengths in wavelengths
+    kx = k0 * np.sin(np.radians(shift.CRITICAL))
+    k = np.linspace(kx - 0.2, min(kx + 0.2, k0), 4001)
+    inside = np.emath.sqrt((k0 * np.sin(np.radians(shift.CRITICAL))) ** 2 - k**2 + 0j)
+    front = 1900.0 / shift.WATER.at(shift.FREQUENCY).rho_z.real * np.sqrt(k0**2 - k**2)
+    waves = np.exp(-((k - kx) ** 2) * width**2 / (16 * np.log(2))) * (front - inside) / (front + inside)
+    x = np.linspace(-200, 350, 1101)  # the head wave trails behind
+    p = np.array([abs(np.trapezoid(waves * np.exp(1j * k * place), k)) for place in x])
+    bright = p > 0.01 * p.max()
+    centroid = (x * p**2)[bright].sum() / (p**2)[bright].sum()
+    assert result_of("goos_haenchen")["wide_critical"] == pytest.approx(centroid, rel=2e-3)
+
+
 def lens_transmission(kx, k0, loss, thickness):
     """p behind a lens over p in front, from the sums of waves in three layers: nothing of the package."""
     outside, inside = (np.emath.sqrt(k2 - kx**2 + 0j) for k2 in (k0**2, k0**2 * (-1 + 1j * loss) / (-1 - 1j * loss)))
@@ -167,14 +207,14 @@ def test_transmission_has_its_maxima_at_whole_half_waves():
     """To a hertz, within which the frequencies of the curve lie."""
     r = result_of("fabry_perot")
     assert r["largest_difference_hz"] < 1
-    assert float(r["waves"].energy_transmission.max()) == pytest.approx(1, abs=1e-4)
+    assert r["least_maximum"] == pytest.approx(1, abs=1e-4)
 
 
 def test_the_design_distorts_less():
-    """A third of the distortion and of the change of width, by a slab that is nearer to matched."""
+    """Less than half the distortion and change of width, by a slab that is nearer to matched."""
     r = result_of("designed_profile")
     for name in ("distortion_percent", "width_change_percent"):
-        assert r[f"designed_{name}"] < r[f"paper_{name}"] / 3
+        assert r[f"designed_{name}"] < r[f"paper_{name}"] / 2
     assert abs(r["designed_density"] - 1) < abs(r["paper_density"] - 1)
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import validate
+from .. import memory, validate
 from .hints import hint
 from .structures import Cell, Slab
 from .values import layer_values
@@ -102,6 +102,7 @@ def faces(slab: Slab, planes: int = 400, before: float = 0.0, after: float = 0.0
     """
     validate.instance(slab, Slab, "slab")
     count = validate.as_count(planes, "planes", least=2)
+    memory.check("planes", 32.0 * count, f"{count} planes", "take fewer")
     ways = []
     for name, value in (("before", before), ("after", after)):
         ways.append(validate.as_number(value, name))

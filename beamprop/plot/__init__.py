@@ -15,6 +15,7 @@ from .field import field as field
 from .plane_waves import bloch as bloch
 from .plane_waves import modes as modes
 from .plane_waves import scattering as scattering
+from .quantities import QUANTITIES as QUANTITIES
 from .sweeps import sweep as sweep
 from .sweeps import width as width
 

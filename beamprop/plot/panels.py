@@ -81,25 +81,29 @@ def finish(ax: Any, new: bool) -> None:
 
     A figure without layout keeps the legend inside, at the best place.
     """
-    handles = ax.get_legend_handles_labels()[0]
-    if handles and ax.figure.get_layout_engine() is None:
-        ax.legend()
-    elif handles:
-        below = (ax.bbox.y0 - ax.xaxis.get_tightbbox().y0) / ax.figure.dpi + BELOW
-        place = ax.transAxes + ScaledTranslation(0, -below, ax.figure.dpi_scale_trans)
-
-        def made(columns: int) -> Any:
-            return ax.legend(
-                loc="upper center", bbox_to_anchor=(0.5, 0), bbox_transform=place, ncols=columns, borderaxespad=0
-            )
-
-        height = _in_columns(made, len(handles), ax.bbox.width)
-        if new:
-            ax.figure.set_figheight(ax.figure.get_figheight() + height / ax.figure.dpi + BELOW)
-        else:
-            ax.figure.draw_without_rendering()  # labels have to fit what the legend leaves of the Axes
+    handles, figure = ax.get_legend_handles_labels()[0], ax.get_figure(root=True)
+    has_layout = figure.get_layout_engine() is not None
+    if has_layout and not new:
+        figure.draw_without_rendering()  # sizes of Axes among others
     wrap(ax.xaxis)
+    if handles and has_layout:
+        height = _legend_below(ax, len(handles))
+        if new:
+            figure.set_figheight(figure.get_figheight() + height)
+        else:
+            figure.draw_without_rendering()  # labels have to fit what the legend leaves of the Axes
+    elif handles:
+        ax.legend()
     wrap(ax.yaxis)
+
+
+def _legend_below(ax: Any, count: int) -> float:
+    """A legend below the Axes, and the height that it takes [inches]."""
+    dpi = ax.get_figure(root=True).dpi
+    below = (ax.bbox.y0 - ax.xaxis.get_tightbbox().y0) / dpi + BELOW
+    place = ax.transAxes + ScaledTranslation(0, -below, ax.figure.dpi_scale_trans)
+    options = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": place, "borderaxespad": 0}
+    return _in_columns(lambda columns: ax.legend(ncols=columns, **options), count, ax.bbox.width) / dpi + BELOW
 
 
 def _in_columns(made: Callable[[int], Any], count: int, room: float) -> float:
@@ -172,7 +176,7 @@ def mesh(v: xr.DataArray, along: str, ax: Any, scale: Colours) -> Any:
 def colour_bar(drawn: Any, axes: Any, scale: Colours, v: xr.DataArray) -> None:
     """The colour bar of maps, which says where colours end before the values do."""
     bar = np.atleast_1d(axes)[0].figure.colorbar(drawn, ax=axes, extend=scale.extend, aspect=30, pad=0.02)
-    name_values(bar.ax.yaxis, v, "norm" in scale.options)
+    name_values(bar.ax.yaxis, v.clip(max=scale.options.get("vmax")), "norm" in scale.options)
     bar.ax.set_ylabel(bar.ax.get_ylabel() + scale.note)
     wrap(bar.ax.yaxis)
 

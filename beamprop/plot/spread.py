@@ -112,8 +112,11 @@ def said(v: xr.DataArray, dim: str, index: int) -> str:
     value, unit = v[dim].values[index], v[dim].attrs.get("units", "")
     if not is_number(v[dim]):
         return str(value)
-    text = units.quantity(value if value == np.round(value) else float(f"{value:.4g}"), unit)
-    return text if unit in ("Hz", "degree") else f"{SHORT.get(dim, dim.replace('_', ' '))} = {text}"
+    value = float(value if value == np.round(value) else f"{value:.4g}")
+    if unit in ("Hz", "degree"):
+        return units.quantity(value, unit)
+    text = units.number(value) if unit in ("", "1") else units.quantity(value, unit)
+    return f"{SHORT.get(dim, dim.replace('_', ' '))} = {text}"
 
 
 def each(v: xr.DataArray, along: str) -> Iterator[tuple[str, np.ndarray]]:

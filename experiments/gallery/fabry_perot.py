@@ -49,6 +49,7 @@ def study(quick=False):
         "design_khz": 2.5,
         "least_lossy_cm": 100 * float(widths["lossy"].fwhm_out.min()),
         "largest_lossy_cm": 100 * float(widths["lossy"].fwhm_out.max()),
+        "least_maximum": float(waves.energy_transmission.sel(frequency=peaks).min()),
         "largest_difference_hz": float(abs(peaks - predicted).max()),
         "waves": waves,
         "half_waves": xr.Dataset(coords={"frequency": predicted}),
@@ -59,16 +60,13 @@ def study(quick=False):
 def picture(result, width=PAGE):
     """Transmission with the half-waves of the effective medium, and widths, by frequency."""
     figure, (left, right) = panels(2, width)
-    waves = result["waves"]
-    left.plot(waves.frequency / 1000, waves.energy_transmission, label="450 periods")
-    left.plot(
-        result["half_waves"].frequency / 1000, np.ones(result["maxima"]), "v", color="#BB5566", label="$k_z L = m\\pi$"
-    )
-    left.set(xlabel="frequency [kHz]", ylabel="energy transmission, 0°", ylim=(0.65, 1.12))
+    bp.plot.scattering(result["waves"], "energy_transmission", ax=left, label="450 periods")
+    left.plot(result["half_waves"].frequency, np.ones(result["maxima"]), "v", color="#BB5566", label="$k_z L = m\\pi$")
+    left.set(ylim=(0.65, 1.12))
     left.legend(loc="upper center", ncols=2)
     for name in ("lossless", "lossy"):
-        right.plot(result[name].frequency / 1000, 100 * result[name].fwhm_out, label=name)
-    right.set(xlabel="frequency [kHz]", ylabel="width behind the slab [cm]", ylim=(7, 14))
+        right.plot(result[name].frequency, 100 * result[name].fwhm_out, label=name)
+    right.set(xlabel="frequency [Hz]", ylabel="width behind the slab [cm]", ylim=(7, 14))
     right.legend(loc="upper left", ncols=2)
     return figure
 

@@ -12,18 +12,17 @@ import numpy as np
 import xarray as xr
 
 import beamprop as bp
+from beamprop.plot.style import new_figure
 
-#: Widths of one and of two columns of a journal [mm].
-COLUMN, PAGE = 88.0, 180.0
-_INCH = 25.4
+#: Width of two columns of a journal [mm]; one is 88.
+PAGE = 180.0
 
 
 def panels(count: int, width: float = PAGE, height: float = 54.0) -> tuple[plt.Figure, np.ndarray]:
     """A figure `width` wide and its Axes, each `height` high [mm]: side by side on a page, stacked in a column."""
     rows = count if width < PAGE else 1
-    size = (width / _INCH, rows * height / _INCH)
-    figure, axes = plt.subplots(rows, count // rows, figsize=size, layout="constrained", squeeze=False)
-    return figure, axes.ravel()
+    figure = new_figure(width, rows * height)
+    return figure, figure.subplots(rows, count // rows, squeeze=False).ravel()
 
 
 def main(study: Callable, picture: Callable) -> None:
@@ -39,6 +38,7 @@ def main(study: Callable, picture: Callable) -> None:
             print(f"{name} = {value:.6g}")
     with plt.style.context("beamprop.plot.paper"):
         figure = picture(result, options.width)
+        figure.draw_without_rendering()  # the layout settles in a second pass where ticks change in the first
         if options.output:
             options.output.mkdir(parents=True, exist_ok=True)
             name = Path(study.__code__.co_filename).stem

@@ -14,6 +14,7 @@ from gallery_main import PAGE, main, panels
 import beamprop as bp
 
 FREQUENCY = 2500.0
+DEGREES = range(-80, 81, 40)
 
 
 def stationary_phase(slab, angle):
@@ -61,15 +62,15 @@ def picture(result, width=PAGE):
     """The beam behind the slab by angle, with the straight ray; centroids of both beams."""
     figure, (left, right) = panels(2, width)
     p = result["behind"]
-    mesh = left.pcolormesh(p.angle, 100 * p.x, abs(p.p).T, shading="nearest", cmap="inferno", rasterized=True)
+    mesh = left.pcolormesh(p.angle, 100 * p.x, abs(p.p).T, shading="nearest", vmin=0, rasterized=True)
     ray = result["thickness_m"] * np.tan(np.radians(p.angle))
     left.plot(p.angle, 100 * ray.where(abs(ray) < 0.4), "w--", label="straight ray")
     left.legend(loc="upper left", labelcolor="w")
     figure.colorbar(mesh, ax=left, label="|p| behind the slab [Pa]")
-    left.set(xlabel="angle [degree]", ylabel="x [cm]")
+    left.set(xlabel="angle [degree]", ylabel="x [cm]", xticks=DEGREES, yticks=range(-40, 41, 20))
     for name, label in (("narrow", "9.6 cm beam"), ("wide", "40 cm beam")):
         right.plot(result[name].angle, 1e3 * result[name].centroid_out, label=label)
-    right.set(xlabel="angle [degree]", ylabel="centroid behind the slab [mm]")
+    right.set(xlabel="angle [degree]", ylabel="centroid behind the slab [mm]", xticks=DEGREES, ylim=(-11, 11))
     right.legend()
     return figure
 
