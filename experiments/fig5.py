@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import DESIGN, FWHM, LOSSES, LOSSLESS, WAVELENGTH, Statement, run, slab
+from common import DESIGN, FWHM, LOSSES, LOSSLESS, PAGE, WAVELENGTH, Statement, in_style, run, slab
 
 import beamprop as bp
 
@@ -14,33 +14,43 @@ ANGLES = (0.0, 45.0, 85.0)
 
 
 def compute(quick: bool = False) -> dict[str, xr.Dataset]:
-    """Fields in open space: air, and both media along the angle."""
+    """Fields in open space, of air and of both media along the angle: maps on faces of cells, and all planes about two depths inside."""
     nx, nz = (201, 201) if quick else (1024, 1000)
     lossless, lossy = slab(450, LOSSLESS), slab(450, LOSSES["a"])
     x = np.linspace(-1.0, 1.0, nx)
-    z = np.linspace(LAUNCH, lossy.thickness + WAVELENGTH, nz)
+    z = bp.faces(lossy, nz, before=-LAUNCH, after=WAVELENGTH)  # inside a cell the pressure ripples
+    about = WAVELENGTH / 10 * (np.arange(97) / 96 - 0.5)  # 16 planes in each of six cells
+    inside = np.concatenate([depth + about for depth in depths(lossy.thickness)])
     beam = bp.GaussianBeam(FWHM, z0=LAUNCH)
-    air = bp.field(bp.Slab.uniform(bp.AIR, lossy.thickness), beam, DESIGN, x, z)
+    media = {
+        "air": (bp.Slab.uniform(bp.AIR, lossy.thickness), 0.0),
+        "lossless": (lossless, ANGLES),
+        "lossy": (lossy, ANGLES),
+    }
     return {
-        "air": air,
-        **{
-            name: bp.field(s, beam, DESIGN, x, z, angle=ANGLES)
-            for name, s in (("lossless", lossless), ("lossy", lossy))
-        },
+        name + part: bp.field(s, beam, DESIGN, x, planes, angle=angles)
+        for name, (s, angles) in media.items()
+        for part, planes in (("", z), ("_inside", inside))
     }
 
 
-def panels(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """The paper's seven panels by letter."""
-    out = {"a": data["air"]}
+def depths(thickness: float) -> tuple[float, float]:
+    """Half a wavelength behind the near face and half a wavelength before the far one."""
+    return WAVELENGTH / 2, thickness - WAVELENGTH / 2
+
+
+def panels(data: dict[str, xr.Dataset], part: str = "") -> dict[str, xr.Dataset]:
+    """The paper's seven panels by letter, or what is `_inside` of each."""
+    out = {"a": data["air" + part]}
     for letters, name in (("bcd", "lossless"), ("efg", "lossy")):
-        out |= {letter: data[name].sel(angle=angle) for letter, angle in zip(letters, ANGLES, strict=True)}
+        out |= {letter: data[name + part].sel(angle=angle) for letter, angle in zip(letters, ANGLES, strict=True)}
     return out
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     """Seven maps on one scale per medium, Re p and |p| side by side."""
-    fig, axes = plt.subplots(4, 4, figsize=(12, 15), layout="compressed")
+    fig, axes = plt.subplots(4, 4, figsize=(PAGE, 9.0), layout="compressed")
     titles = {"a": "air", "b": "lossless", "c": "lossless", "d": "lossless", "e": "lossy", "f": "lossy", "g": "lossy"}
     places = {"a": 0, "b": 4, "c": 8, "d": 12, "e": 6, "f": 10, "g": 14}
     for letter, ds in panels(data).items():
@@ -49,7 +59,7 @@ def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
             bp.plot.field(ds, what, ax=ax, colorbar=what == "abs")
             angle = float(ds.angle)
             ax.set_title("")
-            ax.set_title(f"({letter}) {titles[letter]}, {angle:g}°", loc="left", fontsize="medium")
+            ax.set_title(f"({letter}) {titles[letter]}, {angle:g}°", loc="left")
     for ax in axes.flat[2:4]:
         ax.axis("off")
     return fig
@@ -60,9 +70,8 @@ def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
 
     |p| ripples within a cell by about its own mean; the mean of |p|^2 over a tenth of a wavelength is taken.
     """
-    thickness = ds.attrs["slab_thickness"]
     out = []
-    for depth in (WAVELENGTH / 2, thickness - WAVELENGTH / 2):
+    for depth in depths(ds.attrs["slab_thickness"]):
         part = ds.p.sel(z=slice(depth - WAVELENGTH / 20, depth + WAVELENGTH / 20))
         out.append(float(bp.fwhm(np.sqrt((np.abs(part) ** 2).mean("z")))))
     return out[0], out[1]
@@ -71,7 +80,7 @@ def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
 def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
     """Broadening in air, none in the slab."""
     rows = []
-    first, last = inside_widths(data["air"])
+    first, last = inside_widths(data["air_inside"])
     rows.append(
         Statement(
             "5(a)",
@@ -80,7 +89,7 @@ def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
             last > 2 * first,
         )
     )
-    for letter, ds in panels(data).items():
+    for letter, ds in panels(data, "_inside").items():
         if letter == "a":
             continue
         first, last = inside_widths(ds)

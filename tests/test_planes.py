@@ -1,5 +1,6 @@
 """Planes on faces of cells, means over a cell, and the hint where a map would show stripes that are not there."""
 
+import shlex
 import warnings
 
 import matplotlib as mpl
@@ -10,6 +11,7 @@ from command import good
 
 import beamprop as bp
 from beamprop.media.planes import rows_of
+from beamprop.parameters import Design
 
 mpl.use("agg")
 PAPER = bp.Slab(bp.lmmd_cell(rho_m=0.05, delta_rho=0), periods=450)
@@ -176,6 +178,7 @@ def test_planes_that_skip_through_cells_are_told(step):
         (PAPER, PAPER.cell.thickness * 1.3 * np.arange(19), None),
         (PAPER, PAPER.cell.thickness * 1.3 * np.arange(30), "cell"),
         (PAPER, PAPER.thickness + np.linspace(0, 1, 50), None),
+        (PAPER, np.random.default_rng(0).uniform(0, PAPER.thickness, 50), None),
         (PAPER, bp.faces(PAPER, 60, after=0.4), None),
         (bp.Slab.uniform(WATER, 1.0), np.linspace(0, 1, 50), None),
         (bp.Slab([bp.Layer(WATER, 0.001), bp.Layer(bp.material("blood"), 0.001)], 300), np.linspace(0, 0.6, 50), None),
@@ -187,6 +190,7 @@ def test_planes_that_skip_through_cells_are_told(step):
         "a few planes",
         "means",
         "behind",
+        "at random",
         "bp.faces",
         "uniform",
         "hardly any ripple",
@@ -206,20 +210,42 @@ def test_stripes_are_those_of_the_grid():
     assert np.abs(np.diff(on_faces)).max() < 0.15 * on_faces.mean()
 
 
-@pytest.mark.parametrize(
-    "layers", [[], ["--layer", "acrylic 1.5mm", "--layer", "water 2mm", "--background", "water", "--frequency", "1MHz"]]
-)
-def test_the_default_planes_of_the_command_lie_on_faces(layers, tmp_path):
-    """No warning, and both faces among them; of planes that are given and skip through cells, one line, though it is drawn, too."""
-    ran = good(
-        "field", *layers, "--periods", "300", "--x=-0.001:0.001:3", "--rtol", "1e-4", "--output", tmp_path / "a.nc"
-    )
-    assert ran.stderr == ""
-    z = bp.load(tmp_path / "a.nc").z.values
-    slab = bp.provenance(bp.load(tmp_path / "a.nc"))["slab"]
+#: What is typed -> planes in a cell, and whether they are even.
+DEFAULTS = {
+    "": (1, True),
+    "--periods 4500": (0.1, True),
+    "--periods 997": (0.5, True),
+    "--periods 20": (12, True),
+    "--layer 'acrylic 1.5mm' --layer 'water 2mm' --background water --frequency 1MHz --periods 3": (100, True),
+    "--layer 'acrylic 1.5mm' --layer 'water 2mm' --background water --frequency 1MHz --periods 300": (1, True),
+}
+
+
+@pytest.mark.parametrize("typed", DEFAULTS)
+def test_the_default_planes_of_the_command_draw_no_stripes(typed, tmp_path):
+    """On faces of thin cells, where there is room at as many places of each; even, as some files want them; no warning."""
+    words = [*shlex.split(typed), "--x=-0.001:0.001:3", "--rtol", "1e-4", "--output", tmp_path / "a.nc"]
+    assert good("field", *words).stderr == ""
+    z, slab = bp.load(tmp_path / "a.nc").z.values, bp.provenance(bp.load(tmp_path / "a.nc"))["slab"]
     inside = z[(z >= 0) & (z < slab.thickness * (1 - 1e-9))] / slab.cell.thickness
-    np.testing.assert_allclose(inside, np.round(inside), atol=1e-6)
-    assert slab.thickness in z
+    each, even = DEFAULTS[typed]
+    assert each / 2 <= inside.size / slab.periods <= 2 * each
+    if each <= 1:
+        np.testing.assert_allclose(inside, np.round(inside), atol=1e-6)
+    assert bool(np.ptp(np.diff(z)) < 1e-9) == even
+    assert 140 < z.size < 1200
+    assert z[0] <= 0 < slab.thickness < z[-1]
+
+
+def test_the_default_planes_of_a_stack_lie_on_faces_of_all_its_cells():
+    z = Design(2500.0, 0.1372).z(-0.1, STACK + PAPER)
+    for row in rows_of(STACK + PAPER):
+        inside = (z[(z >= row.start) & (z < row.stop * (1 - 1e-9))] - row.start) / row.cell.thickness
+        assert not row.ripples or np.abs(inside - np.round(inside)).max() < 1e-6
+    assert z[0] == -0.1
+
+
+def test_planes_that_are_given_are_told_of_once(tmp_path):
+    """Though the picture would tell the same."""
     words = ["--x=-0.1:0.1:3", "--rtol", "1e-4", "--z", "0:0.3:80", "--plot", tmp_path / "a.png"]
-    ran = good("field", *words, "--periods", "300")
-    assert ran.stderr.count("skip through cells") == 1
+    assert good("field", *words, "--periods", "300").stderr.count("skip through cells") == 1

@@ -111,7 +111,7 @@ def beam_measures(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @launch("-0.1, 0.73 wavelengths")
 @axis("x", "Lateral positions [m], an axis.", "-0.7:0.7:561, 5.1 wavelengths to both sides")
-@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab, on faces of cells")
+@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab, on faces of thin cells")
 @option(
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )

@@ -22,6 +22,8 @@ RESOLVED = 8
 FEWEST = 4
 #: A map: so many planes in a row of cells. Fewer are profiles, each of which says where it was taken.
 MAP = 20
+#: Of a map at least this share of steps is about as long as their median; of planes at random a third is.
+EVEN = 0.75
 #: Ripples of a smaller share of the pressure are not seen.
 SEEN = 0.05
 #: Planes that lie at the same place of each cell to this share of it show no stripes.
@@ -116,6 +118,21 @@ def faces(slab: Slab, planes: int = 400, before: float = 0.0, after: float = 0.0
     return np.unique(np.concatenate([outer[0], *(np.minimum(z, thickness) for z in inner), outer[1]]))
 
 
+def even_on_faces(slab: Slab, z: np.ndarray) -> np.ndarray:
+    """Even planes z, or, where they skip through the cells of a slab, about as many on faces of the cells: even ones where the slab is
+    one row of cells, with its far face if a near number of cells a step divides the row."""
+    step = float(z[-1] - z[0]) / (z.size - 1)
+    rows = list(rows_of(slab))
+    if not any(row.ripples and step > row.cell.thickness / FEWEST for row in rows):
+        return z
+    if len(rows) > 1:
+        return faces(slab, z.size, max(-float(z[0]), 0.0), max(float(z[-1]) - slab.thickness, 0.0))
+    cells = max(1, round(step / rows[0].cell.thickness))
+    near = (n for n in range(1 + cells // 2, 2 * cells + 1) if rows[0].periods % n == 0)
+    lattice = rows[0].cell.thickness * min(near, key=lambda n: abs(n - cells), default=cells)
+    return lattice * np.arange(np.ceil(z[0] / lattice), np.floor(z[-1] / lattice) + 1)
+
+
 def _even(start: float, stop: float, step: float) -> np.ndarray:
     """Even planes about a step apart, with both ends."""
     return np.linspace(start, stop, max(1, round((stop - start) / step)) + 1) if stop > start else np.array([start])
@@ -179,8 +196,11 @@ def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray) -> None:
         inside = np.unique(z[(z >= row.start) & (z <= row.stop)])
         if not row.ripples or inside.size < MAP:
             continue
-        step, period = float(np.median(np.diff(inside))), row.cell.thickness
+        steps, period = np.diff(inside), row.cell.thickness
+        step = float(np.median(steps))
         turns = np.exp(2j * np.pi * (inside - row.start) / period)
+        if np.mean(np.abs(steps - step) < step / 2) < EVEN:  # nodes of a mesh are no map
+            continue
         if step <= period / FEWEST * (1 + 1e-6) or abs(turns.mean()) > 1 - (np.pi * SAME_PLACE) ** 2:
             continue
         ripple = row.ripple(frequency)

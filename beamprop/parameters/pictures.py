@@ -37,5 +37,5 @@ PICTURE: dict[str, Parameter] = {
     "along": Parameter(
         None, text, "The horizontal axis of the picture, of several.", shown="one of more than eight values"
     ),
-    "plot_width": Parameter(None, _width, "Of the picture [mm]: 88 is one column of a journal, 180 two.", shown="88"),
+    "plot_width": Parameter(None, _width, "Of the picture [mm]: 88 is one column of a journal, 180 two."),
 }

@@ -52,11 +52,15 @@ class Design(NamedTuple):
         return spaced(-0.7 * self.scale, 0.7 * self.scale, 561)
 
     def z(self, launch: float, slab: Slab) -> np.ndarray:
-        """Depths from the launch plane [m] to behind a slab: a quarter of it, and of a few layers two wavelengths. On faces of cells."""
-        from ..media.planes import faces
+        """Depths from the launch plane [m] to behind a slab: a quarter of it, and of a few layers two wavelengths.
+
+        Even, and on faces of the cells where they are finer than such planes resolve.
+        """
+        from ..media.planes import even_on_faces
 
         behind = max(0.25 * slab.thickness, 2 * self.wavelength if self.layered else 0.0)
-        return faces(slab, 561, max(-launch, 0.0), behind)
+        end = slab.thickness + behind if self.layered else 1.25 * slab.thickness
+        return even_on_faces(slab, spaced(launch, end, 561))
 
 
 def design(table: Mapping[str, Any], before: Fluid, requested: Axis | None = None) -> Design:

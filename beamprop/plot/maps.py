@@ -65,11 +65,11 @@ def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | 
     """The map of `shown`, which is on the grid of p, with all that belongs to it; its mesh. `width` [mm] is that of a new figure."""
     across = ax.get_window_extent().width / ax.figure.dpi * INCH if width is None else width - BESIDE
     warn_of_grid(ds, p["z"].values)
-    mesh = _mesh(ax, p, shown)
+    mesh = mesh_of(ax, p, shown)
     note = _shape(ax, p, across)
     outline(ax, ds, across, shown.line)
     if colorbar:
-        _add_colorbar(ax, mesh, shown)
+        add_colorbar(ax, mesh, shown)
     notes = [shown.note] * colorbar + [note]
     ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))))
     if width is not None:
@@ -123,7 +123,7 @@ def _fit_height(figure: Any) -> None:
 # --- on the map -------------------------------------------------------------------------------------------
 
 
-def _mesh(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
+def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
     """The map's cells, each about its point."""
     mesh = ax.pcolormesh(
         p["z"].values,
@@ -140,17 +140,30 @@ def _mesh(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
     return mesh
 
 
-def _add_colorbar(ax: Any, mesh: Any, shown: Drawn) -> Any:
-    """A colour bar exactly as high as the map, beside it whatever the layout."""
-    inches = ax.figure.dpi_scale_trans + ScaledTranslation(1, 0, ax.transAxes)
-    place = ax.inset_axes([GAP / INCH, 0, BAR / INCH, 1], transform=blended_transform_factory(inches, ax.transAxes))
-    bar = ax.figure.colorbar(mesh, cax=place, extend=shown.extend)
-    units.name_axis(bar.ax.yaxis, shown.name, (shown.low, shown.high), shown.unit)
+def add_colorbar(ax: Any, mesh: Any, shown: Drawn, above: bool = False) -> Any:
+    """A colour bar exactly as high as the map beside it, or as wide `above` it, whatever the layout."""
+    side, across = (0, 1), (GAP / INCH, BAR / INCH)
+    inches = ax.figure.dpi_scale_trans + ScaledTranslation(*(side if above else side[::-1]), ax.transAxes)
+    if above:
+        place = ax.inset_axes([0, across[0], 1, across[1]], transform=blended_transform_factory(ax.transAxes, inches))
+    else:
+        place = ax.inset_axes([across[0], 0, across[1], 1], transform=blended_transform_factory(inches, ax.transAxes))
+    bar = ax.figure.colorbar(mesh, cax=place, extend=shown.extend, orientation="horizontal" if above else "vertical")
+    axis = bar.ax.xaxis if above else bar.ax.yaxis
+    units.name_axis(axis, shown.name, (shown.low, shown.high), shown.unit)
+    if above:
+        axis.set_ticks_position("top")
+        axis.set_label_position("top")
     if shown.cmap == "twilight":
         bar.set_ticks([-180, -90, 0, 90, 180])
     else:
-        bar.locator = MaxNLocator(6, steps=[1, 2, 5, 10])
+        bar.locator = MaxNLocator(_ticks(ax) if above else 6, steps=[1, 2, 5, 10])
     return bar
+
+
+def _ticks(ax: Any) -> int:
+    """Intervals of a colour bar above a map, whose numbers take 9 mm each."""
+    return max(1, min(5, int(ax.get_window_extent().width / ax.figure.dpi * INCH / 9)))
 
 
 def outline(ax: Any, ds: xr.Dataset, across: float, color: str) -> None:

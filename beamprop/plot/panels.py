@@ -61,14 +61,11 @@ def name_values(axis: Any, v: xr.DataArray, log: bool = False) -> None:
     units.name_axis(axis, spread.name_of(v, "value"), 1.0 if log else np.abs(v.values), unit)
 
 
-def wrap(axis: Any) -> None:
-    """Break the label of an axis that is longer than the axis into lines of about the same length."""
+def wrap(axis: Any, taken: float = 0.0) -> None:
+    """Break the label of an axis that is longer than the axis, less what is taken of it [pixels], into lines of about the same length."""
     box, size = axis.axes.get_window_extent(), axis.label.get_window_extent()
-    axis.set_label_text(
-        _wrapped(
-            axis.label.get_text(), *((size.width, box.width) if axis.axis_name == "x" else (size.height, box.height))
-        )
-    )
+    long, room = (size.width, box.width) if axis.axis_name == "x" else (size.height, box.height)
+    axis.set_label_text(_wrapped(axis.label.get_text(), long, max(room - taken, 0.3 * room)))
 
 
 def _wrapped(text: str, long: float, room: float) -> str:
@@ -82,19 +79,16 @@ def finish(ax: Any, new: bool) -> None:
     A figure without layout keeps the legend inside, at the best place.
     """
     handles, figure = ax.get_legend_handles_labels()[0], ax.get_figure(root=True)
-    has_layout = figure.get_layout_engine() is not None
-    if has_layout and not new:
-        figure.draw_without_rendering()  # sizes of Axes among others
     wrap(ax.xaxis)
-    if handles and has_layout:
+    height = 0.0
+    if handles and figure.get_layout_engine() is not None:
         height = _legend_below(ax, len(handles))
-        if new:
-            figure.set_figheight(figure.get_figheight() + height)
-        else:
-            figure.draw_without_rendering()  # labels have to fit what the legend leaves of the Axes
     elif handles:
         ax.legend()
-    wrap(ax.yaxis)
+    if new:
+        figure.set_figheight(figure.get_figheight() + height)
+    # before its layout an Axes is not larger than after it, but for the legend
+    wrap(ax.yaxis, 0.0 if new else height * figure.dpi)
 
 
 def _legend_below(ax: Any, count: int) -> float:

@@ -58,6 +58,11 @@ def new_figure(width: float, height: float | None = None) -> Any:
         return plt.figure(FigureClass=PaperFigure, figsize=size, layout="constrained")
 
 
+def styled(figure: Any) -> Any:
+    """The settings to draw on a figure with: the style's on its own figures, those that hold already on others."""
+    return mpl.rc_context(settings()) if isinstance(figure, PaperFigure) else nullcontext()
+
+
 @contextmanager
 def drawing(ax: Any, width: float, height: float | None = None) -> Iterator[Any]:
     """The Axes to draw in, with the style's settings: `ax`, or those of a new figure.
@@ -80,5 +85,5 @@ def drawing(ax: Any, width: float, height: float | None = None) -> Iterator[Any]
     if ax is not None and not hasattr(ax, "pcolormesh"):
         raise validate.refuse("ax", "Axes of matplotlib", ax)
     figure = new_figure(width, height) if ax is None else ax.get_figure(root=True)
-    with mpl.rc_context(settings()) if isinstance(figure, PaperFigure) else nullcontext():
+    with styled(figure):
         yield figure.add_subplot() if ax is None else ax
