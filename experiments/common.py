@@ -64,7 +64,7 @@ def save_all(name: str, folder: Path, datasets: dict[str, xr.Dataset], figure: m
     folder.mkdir(parents=True, exist_ok=True)
     for key, ds in datasets.items():
         bp.save(ds, folder / f"{name}_{key}.nc")
-    figure.savefig(folder / f"{name}.png", dpi=200)
+    figure.savefig(folder / f"{name}.png", dpi=150)
     importlib.import_module("matplotlib.pyplot").close(figure)
 
 

@@ -266,6 +266,15 @@ def test_modes_in_the_complex_plane_and_against_frequency():
             "band: expected at most 8 bands",
         ),
         (lambda: bp.plot.sweep(made("frequency"), width=10), "width: expected at least 40 mm, got 10"),
+        (lambda: bp.plot.sweep(made("frequency"), band=["sample"]), "band: expected a word, got"),
+        (lambda: bp.plot.sweep(made("frequency").astype(str)), "quantity: expected a variable of numbers, got 'trans"),
+        (
+            lambda: bp.plot.sweep(made("frequency").drop_vars("transmissivity")),
+            "ds: expected a dataset with a variable",
+        ),
+        (lambda: bp.plot.sweep(3), "ds: expected a Dataset, got 3"),
+        (lambda: bp.plot.scattering(made("frequency"), label=3), "label: expected a word, got 3"),
+        (lambda: bp.plot.scattering(made("frequency"), along=3), "along: expected a word, got 3"),
         (lambda: bp.plot.modes(made("frequency")), "ds: expected a dataset with kx_over_k0, direction"),
     ],
 )

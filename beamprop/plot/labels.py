@@ -18,6 +18,13 @@ def need(ds: xr.Dataset, *names: str) -> None:
         raise ValueError(f"ds: expected a dataset with {', '.join(names)}, got one without {', '.join(missing)}")
 
 
+def text_or_none(value: Any, name: str) -> str | None:
+    """A word, or None."""
+    if value is not None and not isinstance(value, str):
+        raise validate.refuse(name, "a word", value)
+    return value
+
+
 def title_of(v: Any) -> str:
     """Long name and unit of a variable."""
     unit = v.attrs.get("units", "")

@@ -69,6 +69,7 @@ def scattering(
     validate.word(quantity, "quantity", "transmissivity", "reflectivity", "energy_transmission", "absorption")
     labels.need(ds, quantity)
     validate.flag(log, "log")
+    labels.text_or_none(label, "label")
     v = ds[quantity].squeeze(drop=True)
     chosen = spread.axis_along(v, along, *LATERAL, "frequency")
     axes = panels.draw(v, chosen, (ax, width), log, label)
@@ -137,6 +138,7 @@ def bloch(
     labels.need(ds, "kz_over_k0")
     for name, value in (("imaginary", imaginary), ("mirror", mirror)):
         validate.flag(value, name)
+    labels.text_or_none(label, "label")
     v = ds["kz_over_k0"].squeeze(drop=True).assign_attrs(units="1", long_name="$k_z/k_0$")
     chosen = spread.axis_along(v, along, *LATERAL, "frequency")
     plan = spread.plan(v, chosen)
@@ -231,6 +233,7 @@ def modes(ds: xr.Dataset, ax: Any = None, label: str | None = None, width: float
     >>> ax = bp.plot.modes(ds)
     """
     labels.need(ds, "kx_over_k0", "direction")
+    labels.text_or_none(label, "label")
     k, direction = (ds[name].squeeze([d for d in ds[name].dims if d != "mode" and ds.sizes[d] == 1]) for name in KINDS)
     if set(k.dims) - {"frequency", "mode"}:
         raise ValueError(

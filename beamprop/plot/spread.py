@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from . import units
+from . import labels, units
 
 #: Curves that an eye tells apart in one Axes, which are also the line styles of the style file; and panels of a figure.
 MOST = 8
@@ -38,7 +38,7 @@ def axis_along(v: xr.DataArray, along: str | None, *first: str) -> str:
     ('frequency', 'angle')
     """
     dims = [str(d) for d in v.dims if v.sizes[d] > 1]
-    if along is not None and along not in dims:
+    if labels.text_or_none(along, "along") is not None and along not in dims:
         raise validate.refuse("along", " or ".join(dims) or "none, for there is one value", along)
     ordered = [d for d in first if d in dims] + sorted((d for d in dims if d not in first), key=lambda d: -v.sizes[d])
     numeric = [d for d in ordered if d not in v.coords or is_number(v[d])] or ordered

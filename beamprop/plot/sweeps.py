@@ -56,6 +56,7 @@ def width(
     >>> ax = bp.plot.width(ds)
     """
     labels.need(ds, *WIDTHS)
+    labels.text_or_none(label, "label")
     behind = ds["fwhm_out"].squeeze(drop=True).assign_attrs(units="m", long_name="full width behind the slab")
     chosen = spread.axis_along(behind, along, "frequency", "angle")
     plan = spread.plan(behind, chosen, spread.MOST // len(WIDTHS))
@@ -145,12 +146,15 @@ def sweep(
     >>> ds = bp.sweep(copy, {"sample": np.arange(9), "angle": [0.0, 30.0, 60.0]}, workers=1)
     >>> ax = bp.plot.sweep(ds, "transmissivity", band="sample")
     """
-    name = str(next(iter(ds.data_vars))) if quantity is None else quantity
+    labels.need(ds)
+    name = labels.text_or_none(quantity, "quantity") or str(next(iter(ds.data_vars), "a variable"))
     labels.need(ds, name)
     validate.flag(log, "log")
     v = ds[name].squeeze(drop=True)
     if v.dtype.kind == "c":
         v = abs(v).assign_attrs(v.attrs | {"long_name": f"magnitude of {v.attrs.get('long_name', name)}"})
+    if not spread.is_number(v):
+        raise validate.refuse("quantity", "a variable of numbers", name)
     if band is None:
         return panels.draw(v, spread.axis_along(v, along), (ax, width), log)
     return _band(v, along, band, percentiles, log, (ax, width))
@@ -160,7 +164,7 @@ def _band(
     v: xr.DataArray, along: str | None, band: str, percentiles: tuple[float, float], log: bool, where: tuple[Any, float]
 ) -> Any:
     """Medians, and the ranges between two percentiles, along a dimension."""
-    if band not in v.dims:
+    if labels.text_or_none(band, "band") not in v.dims:
         raise validate.refuse("band", " or ".join(map(str, v.dims)) or "none, for there is one value", band)
     low, high = _pair(percentiles)
     chosen = spread.axis_along(v.isel({band: 0}, drop=True), along)
