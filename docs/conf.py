@@ -60,8 +60,8 @@ html_copy_source = False
 html_show_search_summary = False  # which browsers refuse to fetch from files
 html_show_sphinx = False
 
-#: Bars of an absolute value, |p|, outside of a literal: reStructuredText takes them for a substitution.
-_BAR = re.compile(r"(``[^`]*``|`[^`]*`)|\|")
+#: Bars of an absolute value, |p|, outside of a literal and not escaped: reStructuredText takes them for a substitution.
+_BAR = re.compile(r"(``[^`]*``|`[^`]*`|\\\|)|\|")
 
 
 def _with_plain_bars(_app, _what, _name, _object, _options, lines) -> None:
