@@ -44,7 +44,7 @@ def names_of_the_reference():
         r"currentmodule:: beamprop\.?(\w*)\n(.*?)(?=currentmodule|\Z)", text_of("api.md"), re.DOTALL
     ):
         prefix = f"{module}." if module else ""
-        names += [prefix + name for name in re.findall(r"^   (\w+)$", listed, re.MULTILINE)]
+        names += [prefix + name for name in re.findall(r"^(?:   |\.\. data:: )(\w+)$", listed, re.MULTILINE)]
     return names
 
 
