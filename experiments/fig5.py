@@ -14,36 +14,28 @@ ANGLES = (0.0, 45.0, 85.0)
 
 
 def compute(quick: bool = False) -> dict[str, xr.Dataset]:
-    """Fields in open space, of air and of both media along the angle: maps on faces of cells, and all planes about two depths inside."""
+    """Fields in open space: air, and both media along the angle."""
     nx, nz = (201, 201) if quick else (1024, 1000)
     lossless, lossy = slab(450, LOSSLESS), slab(450, LOSSES["a"])
     x = np.linspace(-1.0, 1.0, nx)
-    z = bp.faces(lossy, nz, before=-LAUNCH, after=WAVELENGTH)  # inside a cell the pressure ripples
-    about = WAVELENGTH / 10 * (np.arange(97) / 96 - 0.5)  # 16 planes in each of six cells
-    inside = np.concatenate([depth + about for depth in depths(lossy.thickness)])
+    z = np.linspace(LAUNCH, lossy.thickness + WAVELENGTH, nz)
     beam = bp.GaussianBeam(FWHM, z0=LAUNCH)
-    media = {
-        "air": (bp.Slab.uniform(bp.AIR, lossy.thickness), 0.0),
-        "lossless": (lossless, ANGLES),
-        "lossy": (lossy, ANGLES),
-    }
-    return {
-        name + part: bp.field(s, beam, DESIGN, x, planes, angle=angles)
-        for name, (s, angles) in media.items()
-        for part, planes in (("", z), ("_inside", inside))
-    }
+    air = bp.Slab.uniform(bp.AIR, lossy.thickness)
+    data = {}
+    for name, s, angles in (("air", air, 0.0), ("lossless", lossless, ANGLES), ("lossy", lossy, ANGLES)):
+        maps = bp.faces(s, nz // 2, before=-LAUNCH, after=WAVELENGTH)  # on faces of cells, so that they show no stripes
+        data[name] = bp.field(s, beam, DESIGN, x, maps, angle=angles)
+        for where, depth in (("near", WAVELENGTH / 2), ("far", s.thickness - WAVELENGTH / 2)):
+            planes = z[np.abs(z - depth) <= WAVELENGTH / 20]
+            data[f"{name} {where}"] = bp.field(s, beam, DESIGN, x, planes, angle=angles)
+    return data
 
 
-def depths(thickness: float) -> tuple[float, float]:
-    """Half a wavelength behind the near face and half a wavelength before the far one."""
-    return WAVELENGTH / 2, thickness - WAVELENGTH / 2
-
-
-def panels(data: dict[str, xr.Dataset], part: str = "") -> dict[str, xr.Dataset]:
-    """The paper's seven panels by letter, or what is `_inside` of each."""
-    out = {"a": data["air" + part]}
+def panels(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """The paper's seven panels by letter."""
+    out = {"a": data["air"]}
     for letters, name in (("bcd", "lossless"), ("efg", "lossy")):
-        out |= {letter: data[name + part].sel(angle=angle) for letter, angle in zip(letters, ANGLES, strict=True)}
+        out |= {letter: data[name].sel(angle=angle) for letter, angle in zip(letters, ANGLES, strict=True)}
     return out
 
 
@@ -65,14 +57,15 @@ def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     return fig
 
 
-def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
+def inside_widths(data: dict[str, xr.Dataset], name: str, angle: float) -> tuple[float, float]:
     """Widths of |p| half a wavelength behind the near face and half a wavelength before the far face [m].
 
     |p| ripples within a cell by about its own mean; the mean of |p|^2 over a tenth of a wavelength is taken.
     """
     out = []
-    for depth in depths(ds.attrs["slab_thickness"]):
-        part = ds.p.sel(z=slice(depth - WAVELENGTH / 20, depth + WAVELENGTH / 20))
+    for where in ("near", "far"):
+        p = data[f"{name} {where}"].p
+        part = p.sel(angle=angle) if "angle" in p.dims else p
         out.append(float(bp.fwhm(np.sqrt((np.abs(part) ** 2).mean("z")))))
     return out[0], out[1]
 
@@ -80,7 +73,7 @@ def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
 def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
     """Broadening in air, none in the slab."""
     rows = []
-    first, last = inside_widths(data["air_inside"])
+    first, last = inside_widths(data, "air", 0.0)
     rows.append(
         Statement(
             "5(a)",
@@ -89,11 +82,11 @@ def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
             last > 2 * first,
         )
     )
-    for letter, ds in panels(data, "_inside").items():
+    for letter, ds in panels(data).items():
         if letter == "a":
             continue
-        first, last = inside_widths(ds)
         medium = "lossless" if letter in "bcd" else "lossy"
+        first, last = inside_widths(data, medium, float(ds.angle))
         change = 100 * (last / first - 1)
         rows.append(
             Statement(
