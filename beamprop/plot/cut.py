@@ -80,7 +80,7 @@ def cut(
         if along == "z":
             maps.warn_of_grid(ds, at)
             maps.outline(axes, ds, axes.get_window_extent().width / axes.figure.dpi * style.INCH, "0.4")
-        axes.set_title(labels.where(ds))
+        axes.set_title(labels.where(ds), fontsize="medium")
         if len(places) > 1 or label:
             # phases fill the picture: their legend stands beside it
             axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if quantity == "phase" else {})

@@ -71,7 +71,7 @@ def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | 
     if colorbar:
         add_colorbar(ax, mesh, shown)
     notes = [shown.note] * colorbar + [note]
-    ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))))
+    ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))), fontsize="medium")
     if width is not None:
         _fit_height(ax.figure)
     return mesh
