@@ -68,6 +68,12 @@ def _with_plain_bars(_app, _what, _name, _object, _options, lines) -> None:
     lines[:] = [_BAR.sub(lambda m: m[1] or r"\|", line) if not line.startswith(">>>") else line for line in lines]
 
 
+def _with_gallery_pages(_app, _page, source) -> None:
+    """Links to the gallery's folder, which the repository shows, lead to its pages on the site."""
+    source[0] = source[0].replace("(../experiments/gallery/README.rst)", "(gallery/index.rst)")
+
+
 def setup(app) -> None:
     """Sphinx's hook."""
+    app.connect("source-read", _with_gallery_pages)
     app.connect("autodoc-process-docstring", _with_plain_bars, priority=400)
