@@ -65,7 +65,7 @@ def picture(result, width=PAGE):
     mesh = left.pcolormesh(p.angle, 100 * p.x, abs(p.p).T, shading="nearest", vmin=0, rasterized=True)
     ray = result["thickness_m"] * np.tan(np.radians(p.angle))
     left.plot(p.angle, 100 * ray.where(abs(ray) < 0.4), "w--", label="straight ray")
-    left.legend(loc="upper left", labelcolor="w")
+    left.legend(loc="upper left", labelcolor="w", frameon=False)
     figure.colorbar(mesh, ax=left, label="|p| behind the slab [Pa]")
     left.set(xlabel="angle [degree]", ylabel="x [cm]", xticks=DEGREES, yticks=range(-40, 41, 20))
     for name, label in (("narrow", "9.6 cm beam"), ("wide", "40 cm beam")):
