@@ -27,6 +27,9 @@ PICTURES = {
     ),
     "eight curves": lambda **o: bp.plot.scattering(made("frequency", "kx_over_k0", **FEW), log=True, **o),
     "long labels": lambda **o: bp.plot.scattering(made("eta", "angle"), label="a slab of 450 periods", **o),
+    "long name and legend": lambda **o: bp.plot.sweep(
+        made("eta", "frequency", "mode", names=("power",)).assign_coords(mode=["reflected", "transmitted"]), **o
+    ),
     "map": lambda **o: bp.plot.scattering(1e7 * made("frequency", "kx_over_k0", **HIGH), **o),
     "map with a note": lambda **o: bp.plot.scattering(made("frequency", "kx_over_k0").map(lambda v: v**-40), **o),
     "logarithmic map": lambda **o: bp.plot.scattering(

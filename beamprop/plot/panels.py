@@ -85,10 +85,10 @@ def finish(ax: Any, new: bool) -> None:
         height = _legend_below(ax, len(handles))
     elif handles:
         ax.legend()
+    # before its layout an Axes is not larger than after it, but for the legend, which makes a new figure higher
+    wrap(ax.yaxis, 0.0 if new else height * figure.dpi)
     if new:
         figure.set_figheight(figure.get_figheight() + height)
-    # before its layout an Axes is not larger than after it, but for the legend
-    wrap(ax.yaxis, 0.0 if new else height * figure.dpi)
 
 
 def _legend_below(ax: Any, count: int) -> float:
