@@ -8,9 +8,11 @@ import sys
 import matplotlib as mpl
 import numpy as np
 import pytest
+import xarray as xr
 from source_tree import CHECKOUT
 
-from beamprop.plot import style, units
+from beamprop.plot import QUANTITIES, style, units
+from beamprop.plot.quantities import drawn
 
 mpl.use("agg")
 
@@ -86,6 +88,20 @@ def test_curves_differ_in_grey():
         apart = abs(lightness(a["color"]) - lightness(b["color"]))
         assert a["linestyle"] != b["linestyle"] or apart >= 15, (a, b)
     assert max(lightness(curve["color"]) for curve in curves) < 78
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_maps_are_read_in_grey(quantity):
+    """Their lightness rises from end to end; of the phase, which has no ends, it is that of both ends, and far from it half a turn off."""
+    p = xr.DataArray([1.0, 1j], dims="x")
+    colours = mpl.colormaps[drawn((p,), quantity).cmap](np.linspace(0, 1, 65))
+    steps = np.diff([lightness(colour) for colour in colours])
+    if quantity == "phase":
+        assert lightness(colours[0]) == pytest.approx(lightness(colours[-1]), abs=1)
+        assert lightness(colours[0]) - lightness(colours[32]) > 60
+    else:
+        assert np.all(steps > 0)
+        assert steps.sum() > 70
 
 
 @pytest.mark.parametrize(
