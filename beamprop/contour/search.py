@@ -13,7 +13,7 @@ import numpy as np
 
 from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
-from . import paths, residues, survey
+from . import paths, survey
 from .check_points import Checks
 from .paths import BentPlan, Contour, Extent
 
@@ -115,12 +115,8 @@ def shallower(search: Search, planned: Planned) -> Planned:
 
 def pair_of_contours(search: Search, planned: Planned) -> tuple[Contour, Contour]:
     """The contours of a plan and of its second plan, with circles around the poles on their wrong side."""
-    plans = planned.plan, planned.plan.second_plan()
-    first, second = (
-        residues.add_residues(search.slab, paths.bent_contour(plan), [planned.poles], search.extent, plan is plans[1])
-        for plan in plans
-    )
-    return first, second
+    places = search.checks.places
+    return places.contour(search, planned, False), places.contour(search, planned, True)
 
 
 def refusal(search: Search) -> str:
