@@ -98,9 +98,7 @@ class Sheet(NamedTuple):
         contour = contour._replace(weight=2 * math.pi * contour.k * filtered * contour.weight)
         radius = math.hypot(*lengths)
         windows = (radius + lengths) * (WIDER if second else 1.0)
-        return contour._replace(
-            lattice=_lattice(contour, spectrum, windows, radius, (plan, self.goal(rtol, planned.plan)))
-        )
+        return contour._replace(lattice=_lattice(contour, spectrum, windows, radius, self.goal(rtol, planned.plan)))
 
     def _reached(self, search: Search, plan: BentPlan, second: bool) -> tuple[Spectrum, np.ndarray]:
         """Where the spectra lie, and lengths, of a plan: wider with its band and its window than those of the first plan."""
@@ -111,7 +109,7 @@ class Sheet(NamedTuple):
         middle, half = spectrum.box.mean(axis=1), np.ptp(spectrum.box, axis=1) / 2
         box = np.stack([middle - more * half, middle + more * half], axis=1)
         if more > 1:
-            spectrum = spectrum._replace(low=0.0)
+            spectrum = spectrum._replace(low=0.0, high=more * spectrum.high)
         lengths = self.lengths(sources, tolerance) * (FARTHER if second else 1.0)
         return spectrum._replace(box=box), lengths
 
@@ -119,8 +117,7 @@ class Sheet(NamedTuple):
         """Whether the second contour's lattice has too many points."""
         spectrum, lengths = self._reached(search, plan, True)
         windows = (math.hypot(*lengths) + lengths) * WIDER
-        sides = np.minimum(np.ptp(spectrum.box, axis=1), 2 * plan.second_plan().band)
-        return bool(np.prod(sides * windows / (2 * math.pi)) > MOST_POINTS)
+        return bool(np.prod(np.ptp(spectrum.box, axis=1) * windows / (2 * math.pi)) > MOST_POINTS)
 
     def amplitudes(self, k0: float, sources: AngleInterpolation, contour: Contour) -> Amplitudes:
         """Bounds of what each node adds to |p|: |w| times the mean of |S| over directions, once; (B, n) each."""
@@ -186,14 +183,13 @@ DIRECTIONS, AROUND = 256, 41
 NO_AMPLITUDES = (np.empty(0), np.empty(0))
 
 
-def _lattice(
-    contour: Contour, spectrum: Spectrum, windows: np.ndarray, radius: float, plan_and_goal: tuple[BentPlan, float]
-) -> Lattice:
-    """The lattice of a contour."""
-    plan, goal = plan_and_goal
-    box = np.clip(spectrum.box, -plan.band, plan.band)
-    kx, ky = (lattice.multiples(ends[0], ends[1], float(window)) for ends, window in zip(box, windows, strict=True))
-    inside, radii = lattice.radii_inside(kx, ky, plan.low, plan.band)
+def _lattice(contour: Contour, spectrum: Spectrum, windows: np.ndarray, radius: float, goal: float) -> Lattice:
+    """The lattice of a contour.
+
+    It ends where the source's spectrum does, also beyond the contour's band: h_L does not end there, for G is cut off sharply.
+    """
+    kx, ky = (lattice.multiples(ends[0], ends[1], float(w)) for ends, w in zip(spectrum.box, windows, strict=True))
+    inside, radii = lattice.radii_inside(kx, ky, spectrum.low, spectrum.high)
     table, carried = lattice.interpolation(radii, math.pi / (lattice.FINE * radius), lattice.positions_for(goal))
     kernel = radial.lommel(contour.k, table, radius) * contour.weight[:, None]
     return Lattice(kx, ky, 1 / float(np.prod(windows)), inside, carried, kernel)
