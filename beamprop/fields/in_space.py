@@ -16,6 +16,7 @@ from ..response import transfer_function
 from ..response.sampled_slab import sample
 from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.in_space import SpaceBeam
+from ..sources.piston import driven_by_velocity
 from . import evaluate
 
 
@@ -92,6 +93,8 @@ def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:
     s = sample(question.slab, float(question.frequency[i]), backward=True)
     beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
     transfer = transfer_function.through(s, question.source.z0)
+    if driven_by_velocity(question.source):
+        transfer = transfer_function.of_velocity(transfer)
     quadrature = choose_in_space(s, beams, transfer, (question.x, question.y), question.z, question.rtol)
     return PreparedInSpace(question, SpaceWaves(s.k0, beams, quadrature, question.y, question.x), transfer)
 

@@ -122,7 +122,7 @@ def check_on_a_line(beam: Any) -> Any:
     """The source, or a ValueError where it is one of three dimensions alone."""
     if needs_y(beam):
         raise ValueError(
-            f"beam: expected one width, and neither azimuth nor y0, where no y is given, got {beam!r}: ask field with y= (3-D widths and "
+            f"beam: expected one on which nothing depends on y (one width, no azimuth, no y0), got {beam!r}: ask field with y= (3-D widths and "
             "measures: not available yet; take fwhm(p, dim='y') of its answer)"
         )
     return beam

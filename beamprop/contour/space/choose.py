@@ -19,7 +19,7 @@ from ..paths import Extent
 from ..quadrature import Quadrature
 from ..search import Planned, Search, first_plan
 from ..unseen_bands import with_unseen_bands
-from .sheet import CUT, INSIDE, Sheet, fall, landed, spectrum_of
+from .sheet import CUT, INSIDE, Sheet, fall, landed, margin_of, spectrum_of
 
 #: Positions along x and along y at which contours are compared: of those that are requested, and about the source, with twice as many
 #: gaps. Their products are some hundred positions, as many as on a line.
@@ -91,5 +91,11 @@ def _extent(s: SampledSlab, sources: AngleInterpolation, sheet: Sheet, z: np.nda
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
     spectrum = spectrum_of(sources, s.k0, tolerance)
     band = min(spectrum.high, arriving(s, beam.z0, z, tolerance))
-    farthest = math.hypot(*sheet.lengths(sources, tolerance))
+    if not math.isfinite(band):
+        raise ValueError(
+            f"z: expected positions behind the launch plane z0 = {beam.z0} of a source with a sharp edge, got {float(z.min())}: "
+            "its spectrum does not end there; and behind the slab where z0 is its near face"
+        )
+    length = math.hypot(*sheet.lengths(sources, tolerance))
+    farthest = length + margin_of(length, band, spectrum.high, fall(rtol))
     return Extent(s.k0, s.nearest_branch, band, farthest, beam.reach(tolerance), path, spectrum.low)

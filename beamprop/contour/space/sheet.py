@@ -43,6 +43,14 @@ class Spectrum(NamedTuple):
     low: float  #: least and largest |k|
     high: float
 
+    def wider(self, more: float) -> Spectrum:
+        """Around the same middle."""
+        if more == 1:
+            return self
+        middle, half = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
+        box = np.stack([middle - more * half, middle + more * half], axis=1)
+        return Spectrum(box, 0.0, more * self.high)
+
 
 def spectrum_of(sources: AngleInterpolation, k0: float, tolerance: float) -> Spectrum:
     """That of the beams that are summed."""
@@ -51,6 +59,28 @@ def spectrum_of(sources: AngleInterpolation, k0: float, tolerance: float) -> Spe
     low, high = np.transpose([beam.rings(k0, tolerance) for beam in beams])
     box = np.stack([boxes[:, :, 0].min(axis=0), boxes[:, :, 1].max(axis=0)], axis=1)
     return Spectrum(box, float(low.min()), float(high.max()))
+
+
+class Reached(NamedTuple):
+    """What a lattice is made of."""
+
+    spectrum: Spectrum
+    windows: np.ndarray  #: 2 pi over its steps along x and y
+    radius: float  #: L, at which G is cut off
+    high: float  #: middle of the filter by which it ends before the spectra do, and its width, infinite without one
+    softness: float
+
+
+def margin_of(length: float, arriving: float, end: float, u: float) -> float:
+    """How much farther out than `length` G is cut off, for a filter of the lattice beyond |k| = `arriving`; 0 where there is none.
+
+    The source's spectrum ends at |k| = `end`, and what arrives of it before; but h_L does not, for G is cut off sharply. A filter of width
+    D blurs that cut by 2u/D. The number of points is least, for a lattice (2 length + 2 margin)(arriving + 2 (1 + INSIDE) u^2/margin), at
+    the root of both terms' ratio.
+    """
+    extra = 2 * (1 + INSIDE) * u**2
+    margin = math.sqrt(length * extra / arriving)
+    return margin if (length + margin) * (arriving + extra / margin) < length * end else 0.0
 
 
 class Sheet(NamedTuple):
@@ -83,41 +113,38 @@ class Sheet(NamedTuple):
 
     def contour(self, search: Search, planned: Planned, second: bool) -> Contour:
         """Bessel's zeros on a bent contour, with weights times 2 pi k b(k), and its lattice."""
-        plan, rtol = planned.plan, search.rtol
-        plan = plan.second_plan() if second else plan
+        plan, u = planned.plan.second_plan() if second else planned.plan, fall(search.rtol)
         width = plan.depth * (SOFTER if second else 1.0)
-        high = plan.band - fall(rtol) * width
-        spectrum, lengths = self._reached(search, planned.plan, second)
-        low = plan.low + fall(rtol) * width
-        if not plan.low or low + INSIDE * fall(rtol) * width > spectrum.low:
+        high, low = plan.band - u * width, plan.low + u * width
+        reached = self._reached(search, planned.plan, second)
+        if not plan.low or low + INSIDE * u * width > reached.spectrum.low:
             plan, low = plan._replace(low=0.0), 0.0
         bent = paths.bent_contour(plan, radial.bessel_zeros)
         bent = bent._replace(falling=int(np.count_nonzero(bent.k.real > high)))
         contour = add_residues(search.slab, bent, [planned.poles], search.extent, second)
         filtered = radial.passed(contour.k, low, high, width)
         contour = contour._replace(weight=2 * math.pi * contour.k * filtered * contour.weight)
-        radius = math.hypot(*lengths)
-        windows = (radius + lengths) * (WIDER if second else 1.0)
-        return contour._replace(lattice=_lattice(contour, spectrum, windows, radius, self.goal(rtol, planned.plan)))
+        return contour._replace(lattice=_lattice(contour, reached, self.goal(search.rtol, planned.plan)))
 
-    def _reached(self, search: Search, plan: BentPlan, second: bool) -> tuple[Spectrum, np.ndarray]:
+    def _reached(self, search: Search, plan: BentPlan, second: bool) -> Reached:
         """Where the spectra lie, and lengths, of a plan: wider with its band and its window than those of the first plan."""
-        sources, first = search.checks.sources, self.first or plan
+        sources, first, u = search.checks.sources, self.first or plan, fall(search.rtol)
         tolerance = self.goal(search.rtol, plan) * (SECOND_CUT if second else CUT)
-        spectrum = spectrum_of(sources, search.slab.k0, tolerance)
-        more = max(1.0, plan.band / first.band)
-        middle, half = spectrum.box.mean(axis=1), np.ptp(spectrum.box, axis=1) / 2
-        box = np.stack([middle - more * half, middle + more * half], axis=1)
-        if more > 1:
-            spectrum = spectrum._replace(low=0.0, high=more * spectrum.high)
+        spectrum = spectrum_of(sources, search.slab.k0, tolerance).wider(max(1.0, plan.band / first.band))
         lengths = self.lengths(sources, tolerance) * (FARTHER if second else 1.0)
-        return spectrum._replace(box=box), lengths
+        length, arriving = math.hypot(*lengths), plan.band - (1 + INSIDE) * u * plan.depth
+        margin = margin_of(length, arriving, spectrum.high, u) * (SOFTER if second else 1.0)
+        softness = 2 * u / margin if margin else math.inf
+        end = min(spectrum.high, arriving + (1 + INSIDE) * u * softness)
+        windows = (length + 2 * margin + lengths) * (WIDER if second else 1.0)
+        spectrum = spectrum._replace(box=np.clip(spectrum.box, -end, end), high=end)
+        return Reached(spectrum, windows, length + margin, arriving + INSIDE * u * softness, softness)
 
     def too_large(self, search: Search, plan: BentPlan) -> bool:
         """Whether the second contour's lattice has too many points."""
-        spectrum, lengths = self._reached(search, plan, True)
-        windows = (math.hypot(*lengths) + lengths) * WIDER
-        return bool(np.prod(np.ptp(spectrum.box, axis=1) * windows / (2 * math.pi)) > MOST_POINTS)
+        reached = self._reached(search, plan, True)
+        points = float(np.prod(np.ptp(reached.spectrum.box, axis=1) * reached.windows / (2 * math.pi)))
+        return not points <= MOST_POINTS
 
     def amplitudes(self, k0: float, sources: AngleInterpolation, contour: Contour) -> Amplitudes:
         """Bounds of what each node adds to |p|: |w| times the mean of |S| over directions, once; (B, n) each."""
@@ -183,13 +210,13 @@ DIRECTIONS, AROUND = 256, 41
 NO_AMPLITUDES = (np.empty(0), np.empty(0))
 
 
-def _lattice(contour: Contour, spectrum: Spectrum, windows: np.ndarray, radius: float, goal: float) -> Lattice:
-    """The lattice of a contour.
-
-    It ends where the source's spectrum does, also beyond the contour's band: h_L does not end there, for G is cut off sharply.
-    """
+def _lattice(contour: Contour, reached: Reached, goal: float) -> Lattice:
+    """The lattice of a contour: it ends where the source's spectrum does, or by a filter."""
+    spectrum, windows, radius, high, softness = reached
     kx, ky = (lattice.multiples(ends[0], ends[1], float(w)) for ends, w in zip(spectrum.box, windows, strict=True))
     inside, radii = lattice.radii_inside(kx, ky, spectrum.low, spectrum.high)
     table, carried = lattice.interpolation(radii, math.pi / (lattice.FINE * radius), lattice.positions_for(goal))
     kernel = radial.lommel(contour.k, table, radius) * contour.weight[:, None]
+    if math.isfinite(softness):
+        kernel *= radial.passed(table, 0.0, high, softness)
     return Lattice(kx, ky, 1 / float(np.prod(windows)), inside, carried, kernel)
