@@ -11,8 +11,7 @@ import numpy as np
 
 import beamprop as bp
 
-from ..case import Case
-from ..cases.in_space import SpaceCase
+from ..case import Case, SpaceCase
 from . import quadrature
 from .quadrature import EPS, Setting, Truth
 
