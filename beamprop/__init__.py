@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
     from .sources.gaussian import GaussianBeam
+    from .sources.piston import Piston
     from .sources.profile import Profile
     from .sources.slits import Slits
     from .study.sweep import sweep
@@ -69,6 +70,7 @@ _HOMES = {
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
     "sources.gaussian": ("GaussianBeam",),
+    "sources.piston": ("Piston",),
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
     "api.beam_measures": ("beam_measures",),
@@ -100,6 +102,7 @@ __all__ = [
     "HintWarning",
     "Layer",
     "Membrane",
+    "Piston",
     "Profile",
     "Slab",
     "Slits",

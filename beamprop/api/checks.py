@@ -11,6 +11,7 @@ from .. import memory, validate
 from ..media.fluids import Fluid
 from ..media.structures import Slab
 from ..sources.base import Beam, Tilted, moved_to_origin, sin_degrees
+from ..sources.in_space import check_on_a_line
 from . import hints
 
 if TYPE_CHECKING:
@@ -64,13 +65,20 @@ class Beams(NamedTuple):
 
 def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
     """The arguments of a question about beams, or a ValueError that names the wrong one."""
+    checked = unmoved_beams(slab, beam, frequency, angle, rtol)
+    source, origin = moved_to_origin(check_on_a_line(beam))
+    return checked._replace(source=source, origin=origin)
+
+
+def unmoved_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
+    """The same of a beam where it is, which may be of three dimensions."""
     validate.instance(slab, Slab, "slab")
     if not isinstance(beam, Tilted):  # to look a protocol up takes longer than all other checks
         validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
     hints.warn_of_air(slab, f)
-    return Beams(f, angles, validate.rtol(rtol), *moved_to_origin(beam))
+    return Beams(f, angles, validate.rtol(rtol), beam, 0.0)
 
 
 def k0(slab: Slab, frequency: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
 from .cell_average import averaged_row
+from .field_in_space import field_in_space, question_in_space, refuse_options
 from .field_question import checked_question, labelled
 from .field_variables import bytes_held, kinds, no_errors, powers
 
@@ -32,6 +33,8 @@ def field(
     *,
     variables: str | Sequence[str] = ("p",),
     average: str | None = None,
+    y: Any = None,
+    azimuth: float | None = None,
 ) -> xr.Dataset:
     """Total pressure of a beam in front of, inside and behind a slab; particle velocity, intensity and power on request.
 
@@ -39,6 +42,7 @@ def field(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
+        With y a GaussianBeam, circular or elliptical, or a Piston.
     frequency : float or 1-D array, Hz
     x, z : float or 1-D array, m
         Any positions; z not in front of the launch plane ``beam.z0``.
@@ -63,6 +67,10 @@ def field(
         * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
+    y : float or 1-D array, m, optional
+        Makes it a question in three dimensions, in open space, of the pressure: see docs/three-dimensions.md.
+    azimuth : float, degree, optional
+        With y: overrides the beam's, the direction of its tilt from x towards y.
 
     average : "cell", optional
         Means over one cell about each plane that lies in a row of cells of several layers (near the ends of the row, over the first or the
@@ -72,7 +80,7 @@ def field(
     Returns
     -------
     Dataset
-        `p` on (frequency, angle, z, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
+        `p` on (frequency, angle, z, x), with y on (frequency, angle, z, y, x), scalars as scalar coordinates, and `error_estimate` on (frequency, angle), of
         open fields: the largest difference between two contours of integration that share no error term, and what planes
         gain that are made of others. Each other variable has its own, ``error_estimate_v_x`` for v_x: over the largest |v_x| of
         the plane, of an intensity over half the product of the largest |p| and |v|, of a power over that of the incident
@@ -100,8 +108,18 @@ def field(
     >>> flow = bp.field(slab, beam, 2500.0, x=0.0, z=[-0.01, 0.0], variables=["v_z", "intensity", "power_through"])
     >>> list(flow)[:4], flow.v_z.attrs["units"]
     (['v_z', 'intensity_x', 'intensity_z', 'power_through'], 'm/s')
+    >>> ellipse = bp.GaussianBeam(fwhm=(0.3, 0.15), angle=45, azimuth=30, z0=-0.1)
+    >>> plane = bp.field(slab, ellipse, 2500.0, x=np.linspace(-1, 1, 65), z=slab.thickness, y=np.linspace(-1, 1, 49))
+    >>> dict(plane.p.sizes)
+    {'y': 49, 'x': 65}
     """
     validate.flag_or_function(progress, "progress")
+    if y is not None:
+        space, labels = question_in_space(slab, beam, frequency, angle, rtol, (x, y, z, azimuth))
+        refuse_options(boundary, period, variables, average)
+        return field_in_space(space, labels, progress)
+    if azimuth is not None:
+        raise validate.refuse("azimuth", "none without y", azimuth)
     question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
     names = labels.variables
     memory.check_field(question.shape, values=bytes_held(names))

@@ -17,9 +17,6 @@ from ..sources.base import Beam
 from . import checks, hints
 from .field_variables import checked_variables
 
-#: All dimensions of a field, in its order.
-AXES = ("frequency", "angle", "z", "x")
-
 
 class Labels(NamedTuple):
     """What an answer is labelled with: axes as they were given (scalars stay scalars), and the arguments."""
@@ -31,7 +28,8 @@ class Labels(NamedTuple):
     period: float | None
     rtol: float
     variables: tuple[str, ...]
-    average: str | None
+    average: str | None = None
+    azimuth: float | None = None  #: of a beam in three dimensions [degree]
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -40,7 +38,7 @@ class Labels(NamedTuple):
 
     @property
     def pick(self) -> tuple[Any, ...]:
-        """The index that drops scalar axes of (frequency, angle, z, x)."""
+        """The index that drops scalar axes of (frequency, angle, z, x), or (frequency, angle, z, y, x)."""
         return checks.dims(**self.axes)[1]
 
 
@@ -81,9 +79,9 @@ def checked_question(
 
 
 def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:
-    """The dataset of variables, on the first of (frequency, angle, z, x), and of their errors, by name."""
-    pick = labels.pick
-    axes = {n: labels.dims[: len([d for d in labels.dims if d in AXES[:n]])] for n in range(2, 5)}
+    """The dataset of variables, on the first of (frequency, angle, z, x) or (…, z, y, x), and of their errors, by name."""
+    pick, names = labels.pick, list(labels.axes)
+    axes = {n: tuple(d for d in labels.dims if d in names[:n]) for n in range(2, len(names) + 1)}
     variables: dict[str, Any] = {name: (axes[v.ndim], v[pick[: v.ndim]]) for name, v in values.items()}
     if labels.boundary == "open":
         for name, error in errors.items():
@@ -91,9 +89,13 @@ def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np
     more: dict[str, Any] = {} if labels.variables == ("p",) else {"variables": labels.variables}
     if labels.average is not None:
         more["average"] = labels.average
+    coords = checks.coords(**labels.axes)
+    if labels.azimuth is not None:
+        more["azimuth"] = labels.azimuth
+        coords["azimuth"] = ((), labels.azimuth)
     ds = datasets.make(
         variables,
-        checks.coords(**labels.axes),
+        coords,
         "field",
         np.atleast_1d(labels.axes["frequency"]),
         slab=labels.slab,
@@ -103,7 +105,8 @@ def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np
         rtol=labels.rtol,
         **more,
     )
-    ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness}
+    geometry = "2-D" if labels.azimuth is None else "3-D"
+    ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness, "geometry": geometry}
     if labels.period is not None:
         ds.attrs["period"] = labels.period
     if labels.average is not None:

@@ -8,12 +8,22 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from . import error, in_stretches, peak_outside
+from . import error, in_stretches
 from .check_points import Checks
 from .error import Compared
 from .paths import BentPlan
 from .quadrature import Quadrature
-from .search import Planned, Search, pair_of_contours, refusal, shallower, too_many, too_many_plane_waves, with_poles
+from .search import (
+    Planned,
+    Search,
+    pair_of_contours,
+    refusal,
+    shallower,
+    too_many,
+    too_many_in_space,
+    too_many_plane_waves,
+    with_poles,
+)
 
 #: The most plans that are tried before the requested rtol is given up: a band that grows by half each time grows 1.5^13 = 200-fold.
 ATTEMPTS = 14
@@ -76,7 +86,7 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
     best: Quadrature | None = None
     by_window: Checks | None = None  # the checks without peaks far outside, once these have been looked for
     attempts = Attempts(LOSSLESS_SHRINKS if search.slab.lossless else SHRINKS)
-    while attempts.made < ATTEMPTS and not too_many_plane_waves(planned.plan):
+    while attempts.made < ATTEMPTS and not _too_many(search, planned):
         planned, attempts = _told_apart(search, planned, attempts)
         if planned.unclear:
             break
@@ -87,7 +97,7 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
         compared = error.compare(checks, pair_of_contours(search, planned), rtol)
         # widening the first plan did not do: is the peak outside?
         if best is not None and by_window is None and compared.estimate.worst > rtol:
-            by_window, checks = compared.checks, peak_outside.with_wider_look(search, planned, compared.checks)
+            by_window, checks = compared.checks, checks.places.with_wider_look(search, planned, compared.checks)
             compared = compared._replace(checks=checks, estimate=error.estimate(checks, *compared[:2]))
         checks, (worst, edge) = compared.checks, (compared.estimate.worst, compared.estimate.edge)
         attempts = attempts.after(worst, best.worst if best is not None else math.inf)
@@ -108,17 +118,23 @@ def _told_apart(search: Search, planned: Planned, attempts: Attempts) -> tuple[P
     while planned.unclear and attempts.shrinks and attempts.made < ATTEMPTS:
         attempts = attempts._replace(shrinks=attempts.shrinks - 1, made=attempts.made + 1)
         planned = shallower(search, planned)
-        if too_many_plane_waves(planned.plan):
+        if _too_many(search, planned):
             break
         planned = with_poles(search, planned)
     return planned, attempts
 
 
+def _too_many(search: Search, planned: Planned) -> bool:
+    return too_many_plane_waves(planned.plan) or search.checks.places.too_large(search, planned.plan)
+
+
 def _without_any(search: Search, planned: Planned) -> Quadrature:
     """A contour in stretches for a periodic slab whose poles cannot be told apart, or the refusal of the question."""
-    if planned.unclear and search.slab.periodic:
+    if planned.unclear and search.slab.periodic and search.checks.places.on_a_line:
         return in_stretches.quadrature_in_stretches(search, crowded=True)
-    raise ValueError(refusal(search) if planned.unclear else too_many(search.rtol))
+    if planned.unclear:
+        raise ValueError(refusal(search))
+    raise ValueError(too_many(search.rtol) if search.checks.places.on_a_line else too_many_in_space(search.rtol))
 
 
 def _quadrature(planned: Planned, compared: Compared) -> Quadrature:

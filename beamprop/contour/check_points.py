@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -11,6 +11,42 @@ from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation
 from ..sources.base import Beam
 from . import near_normal
+from .paths import BentPlan, Contour
+
+if TYPE_CHECKING:
+    from .search import Planned, Search
+
+#: w S(k) and w S(-k) of each beam at the nodes of a contour: (B, n) each.
+Amplitudes = tuple[np.ndarray, np.ndarray]
+
+
+class Places(Protocol):
+    """Positions on each plane at which two contours are compared: on a line along x, or on a grid in the plane (x, y)."""
+
+    @property
+    def across(self) -> float:
+        """The largest distance from the source's middle [m]."""
+
+    @property
+    def on_a_line(self) -> bool:
+        """Whether fields do not depend on y, so that contours in stretches serve too."""
+
+    def too_large(self, search: Search, plan: BentPlan) -> bool:
+        """Whether a plan takes more than can be summed, beside too many nodes."""
+
+    def contour(self, search: Search, planned: Planned, second: bool) -> Contour:
+        """The contour of a plan, or of its second plan, with circles around the poles on its wrong side."""
+
+    def amplitudes(self, k0: float, sources: AngleInterpolation, contour: Contour) -> Amplitudes:
+        """Of the beams that are summed."""
+
+    def fields(
+        self, k0: float, beams: AngleInterpolation, contour: Contour, h: np.ndarray, amplitudes: Amplitudes
+    ) -> np.ndarray:
+        """p of all `beams`, without interpolation, on the planes of h (Z, n): (B, Z, P)."""
+
+    def with_wider_look(self, search: Search, planned: Planned, checks: Checks) -> Checks:
+        """Checks with the peaks far outside of the requested positions."""
 
 
 class Checks(NamedTuple):
@@ -19,7 +55,7 @@ class Checks(NamedTuple):
     sources: AngleInterpolation
     k0: float
     transfer: TransferFunction
-    x: np.ndarray
+    places: Places
     z: np.ndarray
     guided: bool  #: whether the transfer function has guided modes (none without a slab)
     peaks_outside: np.ndarray  #: |p| where each requested beam lands outside of the positions, else 0; (A, Z)

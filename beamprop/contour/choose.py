@@ -15,6 +15,7 @@ from .bent import quadrature_on_bent_contour
 from .check_points import Checks
 from .error import ESTIMATED, uniform_budget
 from .in_stretches import quadrature_in_stretches
+from .line import Line
 from .paths import Extent
 from .propagating import check_rays as check_rays
 from .propagating import propagating_quadrature
@@ -45,7 +46,8 @@ def choose_contour(
     if z.size > planes.size:
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
     seen = survey(s, sources, transfer, points, planes, extent, rtol)
-    checks = Checks(sources, s.k0, transfer, points, planes, guided, seen.peaks_outside, None)
+    line = Line(points - sources.beam.centre)
+    checks = Checks(sources, s.k0, transfer, line, planes, guided, seen.peaks_outside, None)
     chosen = with_unseen_bands(s, checks, _chosen(s, checks, extent, seen, x, rtol))
     return chosen._replace(checked_planes=planes)
 
@@ -73,11 +75,11 @@ def _extent(s: SampledSlab, sources: AngleInterpolation, x: np.ndarray, z: np.nd
     beam = sources.beam
     farthest = float(np.max(np.abs(x - beam.centre), initial=0.0))
     path = max(float(z.max()), s.thickness) - beam.z0 + max(0.0, -float(z.min()))
-    band = min(sources.band(s.k0, tolerance), _arriving(s, beam.z0, z, tolerance))
+    band = min(sources.band(s.k0, tolerance), arriving(s, beam.z0, z, tolerance))
     return Extent(s.k0, s.nearest_branch, band, farthest, beam.reach(tolerance), path)
 
 
-def _arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:
+def arriving(s: SampledSlab, z0: float, z: np.ndarray, tolerance: float) -> float:
     """|kx| beyond which waves have decayed to `tolerance` on their way through half-spaces to the nearest plane.
 
     Their transmission by a slab shows in the band's end.

@@ -18,10 +18,8 @@ import numpy as np
 
 from ..memory import check_contour
 from ..sources.angles import AngleInterpolation
-from . import sums
 from .check_points import Checks, with_dark_planes, worse_neighbours
 from .paths import EPS, Contour
-from .sums import beam_amplitudes
 
 #: Relative change of kx and w at which a response rounds anew: a few units of the last place. The response itself changes by SHIFT
 #: times its phase, which counts as error too.
@@ -100,15 +98,14 @@ class Sampled(NamedTuple):
 
 def fields_of(checks: Checks, sampled: Sampled) -> np.ndarray:
     """p of the beams that are summed at the positions of the checks: (B, Z, X)."""
-    x = checks.x - checks.sources.beam.centre
-    return np.asarray(sums.direct_sum(sampled.contour, sampled.h, *sampled.amplitudes, x))
+    return checks.places.fields(checks.k0, checks.sources, sampled.contour, sampled.h, sampled.amplitudes)
 
 
 def sampled(checks: Checks, contour: Contour, moved: bool) -> Sampled:
     """A contour with its response on the planes of the checks, at kx and w `moved` in their last bits or not."""
     check_contour(contour.k.size, checks.sources.angles.size, checks.z.size)
     h = checks.transfer(contour.k, checks.z, SHIFT if moved else 0.0)
-    return Sampled(contour, h, beam_amplitudes(checks.k0, checks.sources, contour))
+    return Sampled(contour, h, checks.places.amplitudes(checks.k0, checks.sources, contour))
 
 
 class Estimate(NamedTuple):
@@ -170,11 +167,10 @@ def _on_worst_planes(by_plane: Estimate) -> Estimate:
 @np.errstate(over="ignore", invalid="ignore")  # a term that is not finite counts as infinite
 def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     """The terms of the error of the first contour by requested beam and plane, (A, Z)."""
-    sources = checks.sources
-    x = checks.x - sources.beam.centre
+    sources, across = checks.sources, checks.places.across
     # interpolated beams that are also summed: the extreme angles, where interpolation errs most, and three between
     extremes = np.empty(0, int) if sources.weights is None else sources.spread(5)
-    summed, themselves = _summed(checks, first, extremes, x)
+    summed, themselves = _summed(checks, first, extremes)
     a = sources.interpolated_to(summed)
     b = sources.interpolated_to(fields_of(checks, second) if second.fields is None else second.fields)
     largest = _largest(checks, a, b)
@@ -186,7 +182,7 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     apart = np.max(np.abs(a - b), axis=2)
     cut = interpolation = end = first_end = zero
     if sources.beam.entire:
-        cut = _of_requested(sources, _cut_off(checks, first, float(np.max(np.abs(x)))))
+        cut = _of_requested(sources, _cut_off(checks, first, across))
         end, first_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
     if extremes.size:  # thrice, for five angles may miss the largest error
         interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
@@ -197,7 +193,7 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     end, first_end = (_on_seen(v / scale, seen) for v in (end, first_end))
     # both contours share the rounding of k0, of a tilt k0 sin(angle) and of lengths: a unit of the last place of the longest phase,
     # and four of the numbers themselves
-    way = float(np.max(np.abs(x)) + np.max(checks.z) - sources.beam.z0)
+    way = across + float(np.max(checks.z)) - sources.beam.z0
     phases = np.full(largest.shape, EPS * (4 + checks.k0 * way))
     budget = ErrorBudget(apart, source, cut, interpolation, end, phases, low_rank=zero)
     return Estimate(budget, float(np.max(np.maximum(end, first_end))))
@@ -213,14 +209,16 @@ def _largest(checks: Checks, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.maximum(np.minimum(np.max(np.abs(a), axis=2), np.max(np.abs(b), axis=2)), checks.peaks_outside)
 
 
-def _summed(checks: Checks, contour: Sampled, extremes: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _summed(checks: Checks, sampled: Sampled, extremes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fields (B, Z, X) of the beams that are summed, and of the beams at `extremes`, in one product."""
-    sources, (right, left) = checks.sources, contour.amplitudes
+    sources, amplitudes, places, contour = checks.sources, sampled.amplitudes, checks.places, sampled.contour
+    beams = AngleInterpolation(sources.beam, np.concatenate([sources.angles, sources.requested[extremes]]))
     if extremes.size:
-        beams = AngleInterpolation(sources.beam, sources.requested[extremes])
-        pairs = zip((right, left), beam_amplitudes(checks.k0, beams, contour.contour), strict=True)
+        more = AngleInterpolation(sources.beam, sources.requested[extremes])
+        pairs = zip(amplitudes, places.amplitudes(checks.k0, more, contour), strict=True)
         right, left = (np.concatenate(pair) for pair in pairs)
-    p = np.asarray(sums.direct_sum(contour.contour, contour.h, right, left, x))
+        amplitudes = right, left
+    p = places.fields(checks.k0, beams, contour, sampled.h, amplitudes)
     return p[: sources.angles.size], p[sources.angles.size :]
 
 
@@ -253,7 +251,7 @@ def _beyond(end: Sampled) -> np.ndarray:
     right, left = end.amplitudes
     if end.contour.closed:
         return np.zeros((right.shape[0], end.h.shape[0]))
-    n, circles = end.contour.k.size, end.contour.circles
+    n, circles = end.contour.k.size - end.contour.falling, end.contour.circles
     tenth = max(1, (n - circles) // 10)
     tail = slice(max(circles, n - 2 * tenth), n)
     size = (np.abs(right[:, tail]) + np.abs(left[:, tail]))[:, None] * np.abs(end.h[:, tail])

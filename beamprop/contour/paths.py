@@ -28,6 +28,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,6 +51,10 @@ class Contour(NamedTuple):
     sigma: Any = 0.0
     circles: int = 0
     closed: bool = False  #: whether all spectra vanish beyond its end
+    falling: int = 0  #: so many nodes at its end lie beyond the band, where a filter takes waves out
+    lattice: Any = (
+        None  #: of a beam in space, the real (kx, ky) over which its spectrum is summed: see `contour.space.lattice`
+    )
 
 
 class Extent(NamedTuple):
@@ -214,15 +219,24 @@ def plan_bent(
     return BentPlan(depth, window, extent.band, bend, extent.low, *graded)
 
 
-def bent_contour(plan: BentPlan) -> Contour:
-    """Nodes k = s - i depth erf(1.5 s/bend) of the trapezoid rule, and weights dk/2 pi; s = (m + 1/2) 2 pi/W where not graded.
+#: Places v of the nodes `first` to `first + count` of a rule over 0 < v, about 1 apart, and their weights over that step.
+Rule = Callable[[int, int], tuple[np.ndarray, Any]]
+
+
+def midpoints(first: int, count: int) -> tuple[np.ndarray, Any]:
+    """Half whole numbers: the trapezoid rule of functions that are even in v."""
+    return first + np.arange(count) + 0.5, 1.0
+
+
+def bent_contour(plan: BentPlan, rule: Rule = midpoints) -> Contour:
+    """Nodes k = s - i depth erf(1.5 s/bend) of a rule, and weights dk/2 pi; s = v 2 pi/W where not graded.
 
     At a crossing the imaginary part changes sign as erf((crossing - s)/gap). Exponents are cut at 26^2: exp(-26^2) = 2e-294
     does not underflow.
     """
     from scipy.special import erf
 
-    s, step = _graded(plan)
+    s, step = _graded(plan, rule)
     u = 1.5 * s / plan.bend
     down = erf(u)
     slope = (1.5 / plan.bend) * GAUSS * np.exp(-(np.minimum(u, 26.0) ** 2))
@@ -234,17 +248,18 @@ def bent_contour(plan: BentPlan) -> Contour:
     return Contour(s - 1j * plan.depth * down, (1 - 1j * plan.depth * slope) * (step / (2 * math.pi)))
 
 
-def _graded(plan: BentPlan) -> tuple[np.ndarray, np.ndarray | float]:
+def _graded(plan: BentPlan, rule: Rule) -> tuple[np.ndarray, np.ndarray | float]:
     """Re kx of the nodes, and the spacing at each.
 
-    Node m + 1/2 = s/ds + grading asinh(s/sharp): even where s is large, and even in log(s) between `sharp` and there.
+    Node v = s/ds + grading asinh(s/sharp): even where s is large, and even in log(s) between `sharp` and there.
     """
     ds = 2 * math.pi / plan.window
     if not plan.grading:
         first = math.floor(plan.low / ds)
-        return (first + np.arange(max(1, math.ceil(plan.band / ds) - first)) + 0.5) * ds, ds
+        v, share = rule(first, max(1, math.ceil(plan.band / ds) - first))
+        return v * ds, ds * share
     a, B = plan.sharp, plan.grading
-    v = np.arange(max(1, math.ceil(plan.band / ds + B * math.asinh(plan.band / a)))) + 0.5
+    v, share = rule(0, max(1, math.ceil(plan.band / ds + B * math.asinh(plan.band / a))))
     # a sinh(y)/ds + B y = v is convex in y: Newton's method from above descends
     y = np.minimum(v / B, np.arcsinh(v * ds / a))
     for _ in range(60):  # ten serve; the step is quadratic at the end
@@ -252,7 +267,7 @@ def _graded(plan: BentPlan) -> tuple[np.ndarray, np.ndarray | float]:
         y = y - step
         if float(np.max(np.abs(step))) < 1e-14:
             break
-    return a * np.sinh(y), 1 / (1 / ds + B / (a * np.cosh(y)))
+    return a * np.sinh(y), share / (1 / ds + B / (a * np.cosh(y)))
 
 
 def periodic_contour(period: float, band: float) -> Contour:

@@ -14,6 +14,7 @@ import numpy as np
 from ..sources.angles import AngleInterpolation
 from . import paths, sums
 from .check_points import Checks, interpolated
+from .paths import BentPlan
 from .residues import add_residues
 from .search import Planned, Search
 from .sums import beam_amplitudes
@@ -30,12 +31,8 @@ def with_wider_look(search: Search, planned: Planned, checks: Checks) -> Checks:
     """Checks with the peaks far outside; unchanged where the window would take too many plane waves."""
     plan, k0 = planned.plan, search.slab.k0
     across = WIDER * search.extent.across + ALONG * max(search.extent.path, 0.0)
-    extent = search.extent._replace(farthest=across, band=plan.band)
-    wide = paths.plan_bent(extent, ROUGH, sharp=plan.sharp)
-    depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
-    window = max(wide.window, 1.2 * across + 0.8 * math.log(10 / ROUGH) / depth)
-    first = wide._replace(depth=depth, window=window, crossing=plan.crossing, gap=plan.gap)
-    second = first.second_plan()
+    first = rough_plan(search, plan, across)
+    extent, second = search.extent._replace(farthest=across, band=plan.band), first.second_plan()
     if second.nodes > MOST_WAVES:
         return checks
     requested = checks.sources.requested
@@ -49,9 +46,22 @@ def with_wider_look(search: Search, planned: Planned, checks: Checks) -> Checks:
         right, left = beam_amplitudes(k0, beams, contour)
         with np.errstate(over="ignore", invalid="ignore"):
             summed = sums.direct_sum(contour, checks.transfer(contour.k, checks.z), right, left, x)
-            peaks.append(np.nan_to_num(np.max(np.abs(summed), axis=2), nan=0.0, posinf=0.0))
-    less, more = np.minimum(*peaks), np.maximum(*peaks)
-    peaks_outside = np.where(less > (1 - AGREED) * more, less, 0.0)
-    return checks._replace(
-        peaks_outside=np.maximum(checks.peaks_outside, interpolated(requested, requested[chosen], peaks_outside))
-    )
+            peaks.append(np.max(np.abs(summed), axis=2))
+    return with_agreed(checks, chosen, peaks)
+
+
+def rough_plan(search: Search, plan: BentPlan, across: float) -> BentPlan:
+    """A shallow contour of low accuracy up to the same end, for positions as far as `across`."""
+    wide = paths.plan_bent(search.extent._replace(farthest=across, band=plan.band), ROUGH, sharp=plan.sharp)
+    depth = min(wide.depth, plan.depth)  # no deeper than poles were looked for
+    window = max(wide.window, 1.2 * across + 0.8 * math.log(10 / ROUGH) / depth)
+    return wide._replace(depth=depth, window=window, crossing=plan.crossing, gap=plan.gap)
+
+
+def with_agreed(checks: Checks, chosen: np.ndarray, peaks: list[np.ndarray]) -> Checks:
+    """Checks with the peaks (chosen, Z) of two contours of the requested beams at `chosen`, where both show them."""
+    requested = checks.sources.requested
+    finite = [np.nan_to_num(peak, nan=0.0, posinf=0.0) for peak in peaks]
+    less, more = np.minimum(*finite), np.maximum(*finite)
+    peaks_outside = interpolated(requested, requested[chosen], np.where(less > (1 - AGREED) * more, less, 0.0))
+    return checks._replace(peaks_outside=np.maximum(checks.peaks_outside, peaks_outside))

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..modes import misplaced
 from ..response.sampled_slab import SampledSlab
-from . import paths, residues, survey
+from . import paths, survey
 from .check_points import Checks
 from .paths import BentPlan, Contour, Extent
 
@@ -115,12 +115,8 @@ def shallower(search: Search, planned: Planned) -> Planned:
 
 def pair_of_contours(search: Search, planned: Planned) -> tuple[Contour, Contour]:
     """The contours of a plan and of its second plan, with circles around the poles on their wrong side."""
-    plans = planned.plan, planned.plan.second_plan()
-    first, second = (
-        residues.add_residues(search.slab, paths.bent_contour(plan), [planned.poles], search.extent, plan is plans[1])
-        for plan in plans
-    )
-    return first, second
+    places = search.checks.places
+    return places.contour(search, planned, False), places.contour(search, planned, True)
 
 
 def refusal(search: Search) -> str:
@@ -147,4 +143,12 @@ def too_many(rtol: float) -> str:
         f"rtol: {rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
         "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
         "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
+    )
+
+
+def too_many_in_space(rtol: float) -> str:
+    """The same in three dimensions, where the lattice of (kx, ky) has an end too."""
+    return (
+        f"rtol: {rtol:g} needs too many plane waves in three dimensions for this beam and these positions: ask for positions nearer to the "
+        "beam, for z a little behind z0 where the beam is narrow or its edge sharp, for a shorter way, or a higher rtol"
     )

@@ -39,30 +39,13 @@ def survey(
 
     On the first and the last plane: a beam that lands among the positions there does so between too.
     """
-    # 24 places below the axis, out to evanescent waves of 3 k0: rounding is much the same everywhere
-    k = np.linspace(0.03, min(extent.band, 3 * s.k0), 24) * (1 - 0.05j)
-    requested = sources.requested
-    chosen = sources.spread(3)
-    rays = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in requested[chosen]])
-    step = 1e-6 * s.k0
-    beside = np.abs(np.concatenate([rays - step, rays + step]))  # the response is even in kx
-    ends = z[[0, -1]] if z.size > 1 else z
-    # a fifth of kb, or where the phase kx^2 Z/2k0 is 1: Gauss panels over propagating waves resolve no more at first
-    wide = min(0.2 * extent.branch, math.sqrt(2 * s.k0 / max(extent.path, 1e-9)))
-    first_node = math.pi / paths.plan_bent(extent, rtol).window if sources.beam.entire else wide
-    near = near_normal.around(np.array([first_node]))
-    with np.errstate(over="ignore", invalid="ignore"):  # is_calm takes what is not finite for singular
-        h = transfer(np.concatenate([k, k * (1 + SHIFT), near, beside]), ends)
-    noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
-    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # well below rtol, but clear of rounding
-    sharp = math.inf
-    if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
-        sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
-    middle, half = _landing(sources, h[:, 2 * k.size + near.size :], chosen.size, step)
+    noise, sharp, rays, ends = rounding_and_rays(s, sources, transfer, z, extent, rtol)
+    requested, chosen = sources.requested, rays.chosen
+    middle, half = rays.landing(sources, ends)
     peaks_outside = np.zeros((requested.size, z.size))
     if np.any(middle < x.min() - half / 2) or np.any(middle > x.max() + half / 2):
         if z.size > 1:
-            middle, half = _landing(sources, transfer(beside, z), chosen.size, step)
+            middle, half = rays.landing(sources, transfer(rays.beside, z))
         places = middle[..., None] + half[..., None] * np.array([-0.4, 0.0, 0.4])
         peaks_outside = interpolated(
             requested, requested[chosen], _brightness(s, sources, transfer, z, requested[chosen], places.ravel())
@@ -70,18 +53,50 @@ def survey(
     return Survey(noise, peaks_outside, sharp)
 
 
+class Rays(NamedTuple):
+    """The strong plane waves of three requested beams, by which they are followed to where they land."""
+
+    chosen: np.ndarray  #: indices of the beams
+    beside: np.ndarray  #: kx a step below all of their plane waves, and a step above
+    step: float
+
+    def landing(self, sources: AngleInterpolation, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Middle and half-width of the places where the beams land on each plane, (Z, beams), from h at `beside`."""
+        low, high = (v.reshape(h.shape[0], self.chosen.size, -1) for v in np.split(h, 2, axis=1))
+        least, most = span(low, high, self.step)
+        return sources.beam.centre + (least + most) / 2, sources.beam.reach(0.1) + (most - least) / 2
+
+
+def rounding_and_rays(
+    s: SampledSlab, sources: AngleInterpolation, transfer: TransferFunction, z: np.ndarray, extent: Extent, rtol: float
+) -> tuple[float, float, Rays, np.ndarray]:
+    """Relative rounding, the nearest singularity to kx = 0, and the beams' rays with H beside them on the first and last plane."""
+    # 24 places below the axis, out to evanescent waves of 3 k0: rounding is much the same everywhere
+    k = np.linspace(0.03, min(extent.band, 3 * s.k0), 24) * (1 - 0.05j)
+    chosen = sources.spread(3)
+    strong = np.concatenate([strong_waves(sources.at(float(a)), s.k0) for a in sources.requested[chosen]])
+    step = 1e-6 * s.k0
+    rays = Rays(chosen, np.abs(np.concatenate([strong - step, strong + step])), step)  # the response is even in kx
+    ends = z[[0, -1]] if z.size > 1 else z
+    # a fifth of kb, or where the phase kx^2 Z/2k0 is 1: Gauss panels over propagating waves resolve no more at first
+    wide = min(0.2 * extent.branch, math.sqrt(2 * s.k0 / max(extent.path, 1e-9)))
+    first_node = math.pi / paths.plan_bent(extent, rtol).window if sources.beam.entire else wide
+    near = near_normal.around(np.array([first_node]))
+    with np.errstate(over="ignore", invalid="ignore"):  # is_calm takes what is not finite for singular
+        h = transfer(np.concatenate([k, k * (1 + SHIFT), near, rays.beside]), ends)
+    noise = _change(h[:, : k.size], h[:, k.size : 2 * k.size])
+    allowed = max(0.01 * rtol, 30 * max(noise, EPS))  # well below rtol, but clear of rounding
+    sharp = math.inf
+    if not np.all(near_normal.is_calm(h[:, 2 * k.size : 2 * k.size + near.size], allowed)):
+        sharp = near_normal.nearest_singularity(transfer, ends, first_node, s.k0, allowed)
+    return noise, sharp, rays, h[:, 2 * k.size + near.size :]
+
+
 def wide_enough(transfer: TransferFunction, z: np.ndarray, low: float, band: float) -> bool:
     """Whether a beam's own plane waves, low < kx < band, arrive on the first and the last plane with |H| > 0.01 for any."""
     k = np.linspace(low, band, 24) + 0j
     h = np.abs(transfer(k, z[[0, -1]] if z.size > 1 else z))
     return bool(np.all(np.max(np.nan_to_num(h), axis=1) > 0.01))
-
-
-def _landing(sources: AngleInterpolation, h: np.ndarray, count: int, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Middle and half-width of the places where `count` beams land on each plane, (Z, count), from h beside their rays."""
-    low, high = (v.reshape(h.shape[0], count, -1) for v in np.split(h, 2, axis=1))
-    least, most = span(low, high, step)
-    return sources.beam.centre + (least + most) / 2, sources.beam.reach(0.1) + (most - least) / 2
 
 
 def _change(a: np.ndarray, b: np.ndarray) -> float:

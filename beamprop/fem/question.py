@@ -14,6 +14,7 @@ from ..io import datasets
 from ..media.structures import Slab
 from ..progress import Progress, Steps
 from ..sources.base import Beam
+from ..sources.in_space import check_on_a_line
 from . import boundary, solvers, strip
 from .task import Plan, Task, make_task, predict, wavenumber
 
@@ -262,6 +263,7 @@ def field(
     began = time.perf_counter()
     validate.flag_or_function(progress, "progress")
     x, z = validate.positions(x, "x"), validate.positions(z, "z")
+    check_on_a_line(beam)
     if angle is not None and isinstance(beam, Beam):
         beam = beam.at_angle(validate.angle(angle))
     task = make_task(slab, beam, frequency, period, order, elements_x, method, layer_rows)

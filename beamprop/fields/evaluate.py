@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -18,6 +18,37 @@ from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, single
 from ..sources.base import Beam
 from .low_rank import cross, row_weights
+
+
+class Waves(Protocol):
+    """Beams at positions on planes, as sums over the nodes of a contour."""
+
+    @property
+    def sources(self) -> AngleInterpolation:
+        """The beams, and the requested angles."""
+
+    @property
+    def quadrature(self) -> Quadrature:
+        """The contour."""
+
+    @property
+    def points(self) -> int:
+        """Positions on a plane."""
+
+    @property
+    def searched_share(self) -> float:
+        """Of the planes of a map, how many at most may be searched for rows: their h is a part of the work saved."""
+
+    @property
+    def across(self) -> float:
+        """The largest distance from the beams' middle."""
+
+    @property
+    def strengths(self) -> np.ndarray:
+        """Bounds of what each node adds to |p|, over |h|: (n,)."""
+
+    def fill(self, h: np.ndarray, out: np.ndarray) -> None:
+        """p of all requested beams on the planes of h (Z, n) into out (A, Z, points), of which (Z, points) is contiguous."""
 
 
 class Superposition(NamedTuple):
@@ -37,6 +68,31 @@ class Superposition(NamedTuple):
     def off_centre(self) -> np.ndarray:
         """x from the beams' middle (X,)."""
         return self.x - self.sources.beam.centre
+
+    @property
+    def points(self) -> int:
+        """Positions on a plane."""
+        return self.x.size
+
+    @property
+    def searched_share(self) -> float:
+        """Half: the response of the planes takes about as long as their sums."""
+        return 0.5
+
+    @property
+    def across(self) -> float:
+        """The largest distance from the beams' middle."""
+        return float(np.max(np.abs(self.off_centre)))
+
+    @property
+    def strengths(self) -> np.ndarray:
+        """Bounds of what each plane wave adds to |p|, over |h|: (n,)."""
+        right, left = self.amplitudes
+        return np.asarray(np.max(np.abs(right) + np.abs(left), axis=0))
+
+    def fill(self, h: np.ndarray, out: np.ndarray) -> None:
+        """See `fill`."""
+        fill(self, h, out)
 
     def up_to(self, count: int) -> Superposition:
         """Of the first plane waves of a contour alone."""
@@ -114,7 +170,7 @@ def check_finite(p: np.ndarray) -> None:
         )
 
 
-#: A map is made from rows of low rank from so many planes on (of which at most half may be searched) and so many positions (with fewer,
+#: A map is made from rows of low rank from so many planes on (of which `searched_share` may be searched) and so many positions (with fewer,
 #: the response of the planes takes longer than their sums), so many planes at a time: (2048, n) of h at the chosen columns.
 MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
 #: Among how many planes the rows are chosen, and in each medium at least: about twice and once as many as may be chosen, which is a
@@ -126,9 +182,7 @@ SEARCHED, IN_EACH, MOST_ROWS, COMPARED = 90, 40, 48, 5
 UNSEEN = 5
 
 
-def fill_map(
-    waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float
-) -> np.ndarray:
+def fill_map(waves: Waves, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float) -> np.ndarray:
     """p of all requested beams on planes z (Z,) into out (A, Z, X), of which (Z, X) must be contiguous.
 
     Returns the term of low rank in each beam's error, over the largest |p| of a plane: (A,).
@@ -137,7 +191,7 @@ def fill_map(
     for start in range(0, z.size, TOGETHER):
         part = slice(start, start + TOGETHER)
         error = None
-        if min(TOGETHER, z.size - start) >= MANY_PLANES and waves.x.size >= MANY_POINTS:
+        if min(TOGETHER, z.size - start) >= MANY_PLANES and waves.points >= MANY_POINTS:
             error = _fill_low_rank(waves, transfer, z[part], out[:, part], rtol)
         if error is None:
             _fill_all(waves, transfer, z[part], out[:, part])
@@ -146,14 +200,14 @@ def fill_map(
     return low_rank
 
 
-def _fill_all(waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray) -> None:
+def _fill_all(waves: Waves, transfer: TransferFunction, z: np.ndarray, out: np.ndarray) -> None:
     """Every plane by itself, in blocks: of the response, and with many angles of the fields that are interpolated."""
     k, sources = waves.quadrature.contour.k, waves.sources
-    row = max(1, k.size, 0 if sources.weights is None else sources.angles.size * waves.x.size)
+    row = max(1, k.size, 0 if sources.weights is None else sources.angles.size * waves.points)
     block = max(1 if row > 80_000 else 16, 20_000_000 // (16 * row))
     for start in range(0, z.size, block):
         rows = slice(start, start + block)
-        fill(waves, transfer(k, z[rows]), out[:, rows])
+        waves.fill(transfer(k, z[rows]), out[:, rows])
 
 
 def _spread_planes(faces: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -173,32 +227,32 @@ def _spread_planes(faces: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def _fill_low_rank(
-    waves: Superposition, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float
+    waves: Waves, transfer: TransferFunction, z: np.ndarray, out: np.ndarray, rtol: float
 ) -> np.ndarray | None:
     """Planes as combinations of rows that are chosen among spread planes; None where that is not accurate enough.
 
     The error is measured on planes between those, which are summed themselves. exp(|Im k| X) magnifies errors of h.
     """
-    quadrature, (right, left) = waves.quadrature, waves.amplitudes
+    quadrature = waves.quadrature
     k = quadrature.contour.k
     searched, compared = _spread_planes(transfer.slab.faces, z)
     if quadrature.checked_planes is not None:  # among them those that are nearly dark, where small errors count
         compared = np.union1d(compared, np.flatnonzero(np.isin(z, quadrature.checked_planes)))
-    if 2 * searched.size > z.size:
+    if searched.size > waves.searched_share * z.size:
         return None
     h = transfer(k, z[np.concatenate([searched, compared])])
     with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode
-        weighted = h[: searched.size] * np.max(np.abs(right) + np.abs(left), axis=0)
+        weighted = h[: searched.size] * waves.strengths
         size = np.linalg.norm(weighted, axis=1)
     if not np.all((size > DARK) & np.isfinite(size)):
         return None
-    growth = float(np.max(np.abs(k.imag)) * np.max(np.abs(waves.off_centre)))
+    growth = float(np.max(np.abs(k.imag))) * waves.across
     weighted /= size[:, None]
     chosen = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
     rows, columns = chosen.rows, chosen.columns
     at_columns = transfer(k[columns], z)
-    summed = np.empty((out.shape[0], rows.size + compared.size, waves.x.size), complex)
-    fill(waves, h[np.concatenate([rows, searched.size + np.arange(compared.size)])], summed)
+    summed = np.empty((out.shape[0], rows.size + compared.size, waves.points), complex)
+    waves.fill(h[np.concatenate([rows, searched.size + np.arange(compared.size)])], summed)
     of_rows, reference = summed[:, : rows.size], summed[:, rows.size :]
     scale = np.max(np.abs(reference), axis=2)
     scale = np.where(scale > DARK, scale, np.inf)

@@ -28,6 +28,7 @@ from ..media.structures import Cell, Layer, Slab
 from ..media.tolerance import Copy, Tolerance
 from ..sources.base import Beam
 from ..sources.gaussian import GaussianBeam
+from ..sources.piston import Piston
 from ..sources.profile import Profile
 from ..sources.slits import Slits
 from .labels import label
@@ -44,6 +45,7 @@ _RECORDS: dict[str, type] = {
         Tolerance,
         Copy,
         GaussianBeam,
+        Piston,
         Profile,
         Slits,
         Tabulated,

@@ -6,7 +6,9 @@ from __future__ import annotations
 COORDINATES: dict[str, tuple[str, str]] = {
     "frequency": ("Hz", "frequency"),
     "angle": ("degree", "angle of incidence from the normal"),
+    "azimuth": ("degree", "direction of the beam's tilt, from x towards y"),
     "x": ("m", "lateral position"),
+    "y": ("m", "lateral position across x"),
     "z": ("m", "depth from the near face"),
     "kx": ("rad/m", "lateral wavenumber"),
     "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),

@@ -41,6 +41,15 @@ def through(s: SampledSlab, z0: float, quantity: str = "p") -> TransferFunction:
     return TransferFunction(s, partial(_total_velocity, z0=z0, quantity=quantity))
 
 
+def of_velocity(transfer: TransferFunction) -> TransferFunction:
+    """The same of a source whose normal velocity is given, times rho c of the medium in front: p is k/kz times it there."""
+
+    def pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return transfer.pressure(s, kx, z) * (s.branch_points[0] / s.kz_before(kx)[0])
+
+    return TransferFunction(transfer.slab, pressure)
+
+
 def free(s: SampledSlab) -> TransferFunction:
     """Propagation over the distance z in the medium in front alone."""
     return TransferFunction(s, _without_slab)

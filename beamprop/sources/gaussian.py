@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .. import validate
 from ..validate import as_number
 from .base import Tilted, sin_degrees
+from .in_space import EllipticalGaussian
 
 
 @dataclass(frozen=True)
@@ -18,8 +19,9 @@ class GaussianBeam(Tilted):
 
     Parameters
     ----------
-    fwhm : float, m
-        Full width at half maximum of |p| at the launch plane (of |p|^2 with ``width_of="intensity"``).
+    fwhm : float, or two of them, m
+        Full width at half maximum of |p| at the launch plane (of |p|^2 with ``width_of="intensity"``). Two are those along x and y, of an
+        elliptical beam in three dimensions; one is that of a beam on which nothing depends on y, or of a circular beam where y is given.
     angle : float, degree
         From the normal.
     x0, z0 : float, m
@@ -29,23 +31,33 @@ class GaussianBeam(Tilted):
     form : "launch" or "rotated"
         "launch": ``p(x, z0) = exp(-(x-x0)^2/a^2) exp(i k0 sin(angle) (x-x0))``, fwhm along the launch plane.
         "rotated": a beam whose waist lies at (x0, z0), across its own axis, made of propagating waves only.
+    azimuth : float, degree
+        In three dimensions, the direction along which `angle` tilts the beam, from x towards y; the widths stay along x and y.
+    y0 : float, m
+        Middle of the beam along y, in three dimensions.
 
     Examples
     --------
     >>> beam = bp.GaussianBeam(fwhm=0.096, angle=45, z0=-0.1)
     >>> round(beam.radius, 4)
     0.0577
+    >>> bp.GaussianBeam(fwhm=(0.3, 0.15), angle=45, azimuth=30, z0=-0.1).fwhm
+    (0.3, 0.15)
     """
 
-    fwhm: float
+    fwhm: float | tuple[float, float]
     angle: float = 0.0
     x0: float = 0.0
     z0: float = 0.0
     width_of: str = "pressure"
     form: str = "launch"
+    azimuth: float = field(default=0.0, kw_only=True)
+    y0: float = field(default=0.0, kw_only=True)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "fwhm", as_number(self.fwhm, "fwhm", positive=True))
+        object.__setattr__(self, "fwhm", _widths(self.fwhm))
+        object.__setattr__(self, "azimuth", as_number(self.azimuth, "azimuth"))
+        object.__setattr__(self, "y0", as_number(self.y0, "y0"))
         object.__setattr__(self, "x0", as_number(self.x0, "x0"))
         self._check_launch()
         validate.word(self.width_of, "width_of", "pressure", "intensity")
@@ -53,8 +65,28 @@ class GaussianBeam(Tilted):
 
     @property
     def radius(self) -> float:
-        """The 1/e radius a of |p| [m]."""
-        return self.fwhm / (2 * math.sqrt(math.log(2)) if self.width_of == "pressure" else math.sqrt(2 * math.log(2)))
+        """The 1/e radius a of |p|, along x [m]."""
+        return self.radii[0]
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """The 1/e radii of |p| along x and y [m]."""
+        ratio = 2 * math.sqrt(math.log(2)) if self.width_of == "pressure" else math.sqrt(2 * math.log(2))
+        x, y = self.fwhm if isinstance(self.fwhm, tuple) else (self.fwhm, self.fwhm)
+        return x / ratio, y / ratio
+
+    @property
+    def in_space_only(self) -> bool:
+        """Whether it is a beam of three dimensions alone, whose field depends on y."""
+        return isinstance(self.fwhm, tuple) or bool(self.azimuth) or bool(self.y0)
+
+    def in_space(self, azimuth: float) -> EllipticalGaussian:
+        """The beam in three dimensions, tilted along an azimuth [degree], about (0, 0); the launch form alone is known there."""
+        if self.form != "launch":
+            raise ValueError(
+                f"form: expected 'launch' with y, got {self.form!r}, which is not available in three dimensions"
+            )
+        return EllipticalGaussian(self.radii, self.angle, azimuth, self.z0)
 
     @property
     def centre(self) -> float:
@@ -64,7 +96,7 @@ class GaussianBeam(Tilted):
     @property
     def launch_width(self) -> float | None:
         """The width along the launch plane, known for the launch form [m]."""
-        return self.fwhm if self.form == "launch" else None
+        return self.fwhm if self.form == "launch" and not isinstance(self.fwhm, tuple) else None
 
     def moved_to_origin(self) -> GaussianBeam:
         """The same beam with x0 = 0."""
@@ -117,3 +149,13 @@ class GaussianBeam(Tilted):
             return -k0, k0
         middle, half = self._tilt(k0), 2 / self.radius * math.sqrt(math.log(1 / tolerance))
         return middle - half, middle + half
+
+
+def _widths(fwhm: object) -> float | tuple[float, float]:
+    """A width, or those along x and y."""
+    if not isinstance(fwhm, tuple | list) and not (isinstance(fwhm, np.ndarray) and fwhm.ndim):
+        return as_number(fwhm, "fwhm", positive=True)
+    if len(fwhm) != 2:
+        raise validate.refuse("fwhm", "a width, or two widths along x and y", fwhm)
+    x, y = (as_number(width, "fwhm", positive=True) for width in fwhm)
+    return x, y

@@ -48,7 +48,7 @@ class Truth(NamedTuple):
     wrong: int  #: backward modes on the wrong side of the contour
 
 
-class _Setting(NamedTuple):
+class Setting(NamedTuple):
     """What all quadratures of one case share; lengths in m, x relative to the source's middle."""
 
     case: Case
@@ -74,17 +74,17 @@ class _Setting(NamedTuple):
         return h
 
 
-def _setting(case: Case, own: np.ndarray) -> _Setting:
+def setting(case: Case, own: np.ndarray) -> Setting:
     m = Medium(case.slab, case.frequency)
     x = np.concatenate([case.x, own]) - case.beam.centre
     path = max(case.z.max() - m.thickness, 0.0) - case.beam.z0 + max(0.0, -case.z.min())
     near = NearAxis(m, case.z, case.beam.z0) if case.kind in SHARP else None
-    return _Setting(
+    return Setting(
         case, m, Source(case.beam, m.k0), x, float(np.abs(x).max()), case.beam.reach(1e-16), path, near
     )  # fmt: skip
 
 
-def _ends(s: _Setting, tolerance: float) -> tuple[float, float]:
+def _ends(s: Setting, tolerance: float) -> tuple[float, float]:
     """Re kx between which the source's spectrum, and what of it arrives, is not negligible."""
     end = s.source.band(tolerance)
     nearest = float(s.case.z.min())  # waves decay in the half-spaces; through a slab they may go on undiminished
@@ -97,7 +97,7 @@ def _ends(s: _Setting, tolerance: float) -> tuple[float, float]:
     return max(0.0, tilt - (s.source.band(1e-40) - tilt)), end
 
 
-def _pinch(s: _Setting) -> float:
+def _pinch(s: Setting) -> float:
     """How near to kx = 0 a pole or branch point lies, where that is much nearer than k0; else infinite.
 
     A layer of little density lets through what arrives with kx below k0 sqrt(density), relative to the medium in front.
@@ -111,7 +111,7 @@ def _pinch(s: _Setting) -> float:
     return smallest if smallest < 0.05 * s.m.k0 else math.inf
 
 
-def _contour(s: _Setting, step: int, shallow: float) -> tuple[Contour, Grading]:
+def _contour(s: Setting, step: int, shallow: float) -> tuple[Contour, Grading]:
     """The contour of a step: depths and bends alternate, so that no two neighbours share a node."""
     odd = step % 2
     pinch = _pinch(s)
@@ -129,7 +129,7 @@ def _contour(s: _Setting, step: int, shallow: float) -> tuple[Contour, Grading]:
     return Contour(depth, corner, start, end), Grading(finer * (s.extent + s.reach), finer * s.path, near, floor)
 
 
-def _misplaced(s: _Setting) -> tuple[list[complex] | None, float]:
+def misplaced_modes(s: Setting) -> tuple[list[complex] | None, float]:
     """Backward modes above the contour, and by how much it had to be made shallower for them to be found."""
     shallow = 1.0
     while True:
@@ -141,13 +141,13 @@ def _misplaced(s: _Setting) -> tuple[list[complex] | None, float]:
         shallow /= 4
 
 
-def _slab_end(s: _Setting, end: float) -> float:
+def _slab_end(s: Setting, end: float) -> float:
     """|kx| beyond which nothing that reaches the slab comes back."""
     z0 = -s.case.beam.z0
     return min(end, math.hypot(s.m.k0, 42 / z0) + s.m.k0) if z0 > 0 else end
 
 
-def _sided_nodes(s: _Setting, step: int) -> tuple[np.ndarray, np.ndarray]:
+def _sided_nodes(s: Setting, step: int) -> tuple[np.ndarray, np.ndarray]:
     """A contour on either side of the axis, for periodic slabs without loss or nearly."""
     odd = step % 2
     _, end = _ends(s, 1e-22 if odd else 1e-18)
@@ -160,7 +160,7 @@ def _sided_nodes(s: _Setting, step: int) -> tuple[np.ndarray, np.ndarray]:
     return sided_nodes(s.m, tents, s.extent + s.reach, s.path, 1.5**step)
 
 
-def _nodes(s: _Setting, step: int, shallow: float, wrong: list[complex]) -> tuple[np.ndarray, np.ndarray]:
+def nodes_on_contour(s: Setting, step: int, shallow: float, wrong: list[complex]) -> tuple[np.ndarray, np.ndarray]:
     """Contour and circles around what it leaves on the wrong side."""
     c, g = _contour(s, step, shallow)
     points = [side * b for b in s.m.branch_points() for side in (1, -1)]
@@ -215,19 +215,19 @@ def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     return np.nan_to_num(np.abs(p).max(axis=1))
 
 
-def _uncancelled(s: _Setting, k: np.ndarray, w: np.ndarray, kz: Any, p: np.ndarray) -> np.ndarray:
+def _uncancelled(s: Setting, k: np.ndarray, w: np.ndarray, kz: Any, p: np.ndarray) -> np.ndarray:
     """The larger of |p| and |v_z| on each plane: what cancels where a plane is dark, (Z,)."""
     v = field_sum(s.source, lambda kk: s.response(kk, True), k, w, kz, s.x)
     return np.nan_to_num(np.maximum(np.abs(p).max(axis=1), np.abs(v).max(axis=1)), posinf=0.0)
 
 
-def _cancelled(s: _Setting, uncancelled: np.ndarray, scale: np.ndarray) -> np.ndarray:
+def _cancelled(s: Setting, uncancelled: np.ndarray, scale: np.ndarray) -> np.ndarray:
     """What rounding of lengths and phases leaves unknown on each plane where waves cancel; (Z,)."""
     way = np.maximum(np.abs(s.case.z), s.m.thickness) - s.case.beam.z0
     return np.where(uncancelled > 10 * scale, 4 * EPS * (1 + s.m.k0 * way) * uncancelled / scale, 0.0)
 
 
-def _rounding(s: _Setting) -> float:
+def _rounding(s: Setting) -> float:
     """What rounding of periods, of long phases, and of a profile's positions far from x = 0, leaves unknown."""
     origin = abs(s.case.beam.centre) if isinstance(s.case.beam, bp.Profile) else 0.0
     periods = sum(len(layers) * count for layers, count in s.m.segments)
@@ -236,9 +236,9 @@ def _rounding(s: _Setting) -> float:
 
 def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
     """The field by two quadratures that agree to a tenth of rtol, if they can to `goal`; or why there is none."""
-    s = _setting(case, own)
+    s = setting(case, own)
     sided = case.kind in BANDED and not s.rotated
-    wrong, shallow = ([], 1.0) if s.rotated or sided else _misplaced(s)
+    wrong, shallow = ([], 1.0) if s.rotated or sided else misplaced_modes(s)
     if wrong is None:
         return "backward modes not located"
     elsewhere = np.zeros(case.z.size) if s.near is not None else largest_elsewhere(s.m, s.source, case.z)
@@ -252,7 +252,7 @@ def truth(case: Case, own: np.ndarray, goal: float = 0.0) -> Truth | str:
         elif sided:
             (k, w), kz = _sided_nodes(s, step), None
         else:
-            (k, w), kz = _nodes(s, step, shallow, wrong), None
+            (k, w), kz = nodes_on_contour(s, step, shallow, wrong), None
         if k.size > MOST_NODES:
             break
         p = field_sum(s.source, s.response, k, w, kz, s.x)
@@ -277,7 +277,7 @@ def _worst(t: Truth) -> float:
 
 
 def _agreement(
-    s: _Setting,
+    s: Setting,
     p: np.ndarray,
     before: np.ndarray,
     elsewhere: np.ndarray,

@@ -7,7 +7,7 @@ import re
 import sys
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from ..cases.numbering import angles_of, make_case, map_of
 from ..reference.quadrature import SILENT, Truth, truth
 
 #: A refusal names the argument that asks too much; any other error is a fault of the package.
-REFUSAL = re.compile(r"(slab|before|after|beam|frequency|x|z|rtol|angle|z0|x0): ")
+REFUSAL = re.compile(r"(slab|before|after|beam|frequency|x|y|z|rtol|angle|z0|x0): ")
 
 
 def answer(case: Case, x: np.ndarray, z: np.ndarray, angles: np.ndarray | None) -> tuple[Any, dict[str, Any]]:
@@ -103,8 +103,13 @@ def compare_with_truth(number: int) -> dict[str, Any]:
 
 def study(numbers: Sequence[int], workers: int = 2) -> xr.Dataset:
     """All cases, in processes of their own."""
+    return in_processes(compare_with_truth, numbers, workers)
+
+
+def in_processes(compare: Callable[[int], dict[str, Any]], numbers: Sequence[int], workers: int) -> xr.Dataset:
+    """What `compare` says of all cases."""
     with multiprocessing.get_context("spawn").Pool(workers) as pool:
-        jobs = pool.imap_unordered(compare_with_truth, numbers)
+        jobs = pool.imap_unordered(compare, numbers)
         rows = sorted(tqdm(jobs, total=len(numbers), desc="cases", file=sys.stderr), key=lambda r: r["number"])
     keys = [key for key in rows[0] if key != "number"]
     return xr.Dataset({key: ("case", np.array([r[key] for r in rows])) for key in keys},

@@ -1,0 +1,119 @@
+"""The question of a field in three dimensions, and p(z, y, x) at one frequency, evaluated on the contour that was chosen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from ..contour.error import ErrorBudget
+from ..contour.quadrature import Quadrature
+from ..contour.space import lattice
+from ..contour.space.choose import choose_in_space
+from ..media.structures import Slab
+from ..response import transfer_function
+from ..response.sampled_slab import sample
+from ..sources.angles import AngleInterpolation, interpolate_angles
+from ..sources.in_space import SpaceBeam
+from ..sources.piston import driven_by_velocity
+from . import evaluate
+
+
+@dataclass(frozen=True, eq=False)
+class SpaceQuestion:
+    """p of one source on (frequency, angle, z, y, x)."""
+
+    slab: Slab
+    source: SpaceBeam
+    frequency: np.ndarray  #: (F,) Hz
+    angle: np.ndarray  #: (A,) degree
+    z: np.ndarray  #: (Z,) m
+    y: np.ndarray  #: (Y,) m from the source's middle
+    x: np.ndarray  #: (X,) m from the source's middle
+    rtol: float
+
+    @property
+    def shape(self) -> tuple[int, int, int, int, int]:
+        """F, A, Z, Y, X."""
+        return self.frequency.size, self.angle.size, self.z.size, self.y.size, self.x.size
+
+
+class SpaceWaves(NamedTuple):
+    """Beams at every (y, x), by the lattice of a contour: `evaluate.Waves`."""
+
+    k0: float
+    sources: AngleInterpolation
+    quadrature: Quadrature
+    y: np.ndarray
+    x: np.ndarray
+
+    @property
+    def points(self) -> int:
+        """Positions on a plane."""
+        return self.x.size * self.y.size
+
+    @property
+    def searched_share(self) -> float:
+        """All but a tenth: h is a small part of a sum over a lattice."""
+        return 0.9
+
+    @property
+    def across(self) -> float:
+        """The largest distance from the source's middle."""
+        return float(np.hypot(np.max(np.abs(self.x)), np.max(np.abs(self.y))))
+
+    @property
+    def strengths(self) -> np.ndarray:
+        """|w M| of each node at the radii of the strongest plane waves of the lattice, roughly."""
+        grid = self.quadrature.contour.lattice
+        strongest = np.max(np.abs(grid.spectra(self.k0, self.sources)), axis=0).ravel()[grid.inside]
+        by_radius = grid.carried.T @ strongest
+        return np.asarray(np.sqrt((np.abs(grid.kernel) ** 2) @ by_radius**2))
+
+    def fill(self, h: np.ndarray, out: np.ndarray) -> None:
+        """By rows y where there are fewer of them than planes, else by planes."""
+        grid, sources = self.quadrature.contour.lattice, self.sources
+        spectra = grid.spectra(self.k0, sources)
+        by_interpolation = sources.weights is not None
+        summed = np.empty((sources.angles.size, *out.shape[1:]), complex) if by_interpolation else out
+        view = summed.reshape(*summed.shape[:2], self.y.size, self.x.size)
+        if ROW_OVER_PLANE * self.y.size < h.shape[0]:
+            for beam, spectrum in enumerate(spectra):
+                for row, y in enumerate(self.y):
+                    view[beam, :, row] = h @ lattice.waves_at(grid, spectrum, self.x, float(y))
+        else:
+            lattice.fields(grid, spectra, h, self.x, self.y, view)
+        evaluate.check_finite(summed)
+        if by_interpolation:
+            sources.interpolated_to(summed, out)
+
+
+#: A row y of all planes costs about as much as so many planes of all rows: experiments/benchmarks/space.py measures 1.4 to 2.1.
+ROW_OVER_PLANE = 1.5
+
+
+def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:
+    """Choose the contour for frequency i."""
+    s = sample(question.slab, float(question.frequency[i]), backward=True)
+    beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
+    transfer = transfer_function.through(s, question.source.z0)
+    if driven_by_velocity(question.source):
+        transfer = transfer_function.of_velocity(transfer)
+    quadrature = choose_in_space(s, beams, transfer, (question.x, question.y), question.z, question.rtol)
+    return PreparedInSpace(question, SpaceWaves(s.k0, beams, quadrature, question.y, question.x), transfer)
+
+
+class PreparedInSpace(NamedTuple):
+    """A question at one frequency, and the contour that answers it."""
+
+    question: SpaceQuestion
+    waves: SpaceWaves
+    transfer: transfer_function.TransferFunction
+
+    def fill(self, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
+        """p at planes and angles into out (A, Z, Y, X), whose (Z, Y, X) is contiguous; the terms of its estimated error, (A,)."""
+        waves = self.waves._replace(sources=self.waves.sources.taken(angles))
+        flat = out.reshape(*out.shape[:2], -1)
+        low_rank = evaluate.fill_map(waves, self.transfer, self.question.z[planes], flat, self.question.rtol)
+        return self.waves.quadrature.budget.taken(angles)._replace(low_rank=low_rank)

@@ -1,0 +1,115 @@
+"""The pieces of fields in three dimensions: nodes, kernel, table, lattice; each against a slow and obvious sum."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import exp1, j0, jn_zeros, jv
+
+from beamprop.contour.paths import BentPlan, bent_contour
+from beamprop.contour.space import lattice, radial
+from beamprop.sources.angles import AngleInterpolation
+from beamprop.sources.in_space import unit_vector
+
+
+def test_nodes_are_bessels_zeros():
+    places, weights = radial.bessel_zeros(0, 40)
+    assert np.max(np.abs(math.pi * places / jn_zeros(0, 40) - 1)) < 1e-15
+    later, shares = radial.bessel_zeros(30, 10)
+    assert np.array_equal(later, places[30:])
+    assert np.array_equal(shares, weights[30:])
+    assert shares[-1] == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize("r", [0.0, 0.7, 3.0])
+def test_the_rule_integrates_a_hankel_pair(r):
+    """integral exp(-k^2) J0(k r) k dk = exp(-r^2/4)/2 (Watson, 13.3), on the axis and on a bent contour."""
+    for depth, window in ((0.0, 20.0), (0.5, 30.0)):
+        contour = bent_contour(BentPlan(depth, window, 7.0, 2.0), radial.bessel_zeros)
+        summed = np.sum(2 * math.pi * contour.k * contour.weight * np.exp(-(contour.k**2)) * jv(0, contour.k * r))
+        assert abs(summed - math.exp(-(r**2) / 4) / 2) < 1e-12
+
+
+def test_the_rule_holds_where_nodes_are_graded():
+    plan = BentPlan(0.5, 30.0, 7.0, 2.0, sharp=0.01, grading=9.0)
+    contour = bent_contour(plan, radial.bessel_zeros)
+    pole = 0.01  # at k = +- 0.01i: k dk/(k^2 + pole^2) exp(-k^2) = -exp(pole^2) Ei(-pole^2)/2
+    summed = np.sum(2 * math.pi * contour.k * contour.weight * np.exp(-(contour.k**2)) / (contour.k**2 + pole**2))
+    assert abs(summed - math.exp(pole**2) * exp1(pole**2) / 2) < 1e-9
+
+
+def test_lommels_integral():
+    """integral_0^L J0(q r) J0(k r) r dr by Gauss panels, at complex q and beside q = k."""
+    radius, q, k = 1.3, np.array([4 - 1j, 20 - 0.5j, 7 + 1e-3j]), np.array([0.0, 3.0, 7.0, 25.0])
+    g, w = np.polynomial.legendre.leggauss(120)
+    r = radius * (g + 1) / 2
+    known = (jv(0, np.outer(q, r)) * (w * r * radius / 2)) @ j0(np.outer(r, k))
+    assert np.max(np.abs(radial.lommel(q, k, radius) - known)) < 1e-12
+    assert np.array_equal(radial.lommel(q, -k, radius), radial.lommel(q, k, radius))
+
+
+@pytest.mark.parametrize(("positions", "error"), [(8, 1e-8), (10, 2e-10), (12, 2e-12), (14, 4e-14)])
+def test_the_table_between_radii(positions, error):
+    """Of functions that are as sharp in k as a cut at L makes them, J0(k r) for r up to L."""
+    radius, k = 2.0, np.random.default_rng(0).uniform(0, 40, 500)
+    nodes, carried = lattice.interpolation(k, math.pi / (lattice.FINE * radius), positions)
+    for r in (0.3, 1.0, 2.0):
+        assert np.max(np.abs(carried @ j0(nodes * r) - j0(k * r))) < error
+
+
+def test_a_filter_is_even_and_ends():
+    k = np.array([0.5, 30.0, 60.0, 99.0]) - 0.7j
+    b = radial.passed(k, 20.0, 80.0, 2.0)
+    assert np.max(np.abs(b - [0, 1, 1, 0])) < 1e-8
+    assert np.max(np.abs(radial.passed(-k, 20.0, 80.0, 2.0) - b)) < 1e-15
+
+
+class Gaussian:
+    """A spectrum of the lattice's own test, with its field."""
+
+    angle = 0.0
+
+    def spectrum_at(self, kx, ky, k0):
+        return math.pi * 0.02 * np.exp(-(0.01 * kx**2 + 0.04 * ky**2) / 4) * 1.0
+
+    def at_angle(self, angle):
+        return self
+
+
+def whole(x_side=4.0, y_side=5.0):
+    """A lattice whose nodes are its radii: h_L is h."""
+    kx, ky = lattice.multiples(-130.0, 130.0, x_side), lattice.multiples(-70.0, 70.0, y_side)
+    inside, radii = lattice.radii_inside(kx, ky, 0.0, 200.0)
+    nodes, carried = lattice.interpolation(radii, 1.0, 8)
+    return lattice.Lattice(kx, ky, 1 / (x_side * y_side), inside, carried, None), nodes
+
+
+@pytest.mark.parametrize("by_rows", [False, True])
+def test_rows_and_planes_are_the_sum_over_the_lattice(by_rows):
+    grid, nodes = whole()
+    beams = AngleInterpolation(Gaussian(), np.array([0.0]))
+    spectrum = grid.spectra(1.0, beams)
+    x, y, h = np.linspace(-0.3, 0.2, 5), np.linspace(-0.1, 0.4, 4), np.stack([np.ones(nodes.size), nodes**2 / 100]) + 0j
+    p = np.empty((1, 2, 4, 5), complex)
+    if by_rows:
+        for row, at in enumerate(y):
+            p[0, :, row] = h @ lattice.waves_at(grid, spectrum[0], x, float(at))
+    else:
+        lattice.fields(grid, spectrum, h, x, y, p)
+    kx, ky = np.meshgrid(grid.kx, grid.ky)
+    for i, values in enumerate((np.ones(kx.shape), (kx**2 + ky**2) / 100)):
+        for j, b in enumerate(y):
+            for m, a in enumerate(x):
+                plain = np.sum(spectrum[0] * values * np.exp(1j * (kx * a + ky * b)))
+                assert abs(p[0, i, j, m] - plain) < 1e-12 * np.abs(p[0, i]).max() + 1e-13
+    u, v = np.meshgrid(x, y)
+    assert np.max(np.abs(p[0, 0] - np.exp(-(u**2) / 0.01 - v**2 / 0.04))) < 1e-12
+
+
+def test_directions_are_exact_at_quarters():
+    assert unit_vector(0.0) == (1.0, 0.0)
+    assert unit_vector(90.0) == (0.0, 1.0)
+    assert unit_vector(-90.0) == (0.0, -1.0)
+    assert unit_vector(540.0) == (-1.0, 0.0)
+    assert unit_vector(30.0) == pytest.approx((math.sqrt(3) / 2, 0.5), abs=1e-15)
+    assert unit_vector(-150.0) == pytest.approx((-math.sqrt(3) / 2, -0.5), abs=1e-15)

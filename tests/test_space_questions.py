@@ -1,0 +1,137 @@
+"""What `field` answers and refuses where y is given."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import beamprop as bp
+
+SLAB = bp.Slab(bp.lmmd_cell(), 45)
+ROUND = bp.GaussianBeam(0.096, 20, z0=-0.05)
+ELLIPSE = bp.GaussianBeam((0.2, 0.1), 20, z0=-0.05, azimuth=30.0)
+
+
+def test_dimensions_are_frequency_angle_z_y_x():
+    ds = bp.field(SLAB, ELLIPSE, [2400.0, 2500.0], [0, 0.1, 0.2], [0.1, 0.2], angle=[0, 10], y=[0.0, 0.1, 0.2, 0.3])
+    assert ds.p.dims == ("frequency", "angle", "z", "y", "x")
+    assert ds.error_estimate.dims == ("frequency", "angle")
+    assert ds.azimuth.item() == 30.0
+    assert ds.attrs["geometry"] == "3-D"
+    assert {ds.y.attrs["units"], ds.azimuth.attrs["units"]} == {"m", "degree"}
+    for i, angle in enumerate([0, 10]):
+        single = bp.field(SLAB, ELLIPSE, 2500.0, 0.1, 0.2, angle=angle, y=0.3)
+        assert single.p.dims == ()
+        assert single.p.item() == pytest.approx(ds.p.values[1, i, 1, 3, 1], rel=1e-6)
+
+
+def test_without_y_nothing_changes():
+    ds = bp.field(SLAB, ROUND, 2500.0, [0, 0.1], [0.1])
+    assert ds.p.dims == ("z", "x")
+    assert ds.attrs["geometry"] == "2-D"
+    assert "azimuth" not in ds.coords
+
+
+def test_azimuth_overrides_the_beams():
+    given = bp.field(SLAB, ELLIPSE, 2500.0, 0.1, 0.2, y=0.3, azimuth=75.0)
+    own = bp.field(SLAB, bp.GaussianBeam((0.2, 0.1), 20, z0=-0.05, azimuth=75.0), 2500.0, 0.1, 0.2, y=0.3)
+    assert given.p.item() == own.p.item()
+    assert given.azimuth.item() == 75.0
+
+
+def test_files_and_provenance_keep_the_beam(tmp_path):
+    ds = bp.field(SLAB, ELLIPSE, 2500.0, [0, 0.1], [0.1, 0.2], y=[0.0, 0.1])
+    bp.save(ds, tmp_path / "p.nc")
+    loaded = bp.load(tmp_path / "p.nc")
+    assert np.array_equal(loaded.p.values, ds.p.values)
+    assert bp.provenance(loaded)["beam"] == ELLIPSE
+    assert bp.provenance(loaded)["azimuth"] == 30.0
+
+
+def test_widths_along_y_are_taken_of_a_cut():
+    beam = bp.GaussianBeam((0.2, 0.1), z0=0.0)
+    ds = bp.field(bp.Slab.uniform(bp.AIR, 0.1), beam, 2500.0, 0.0, 0.0, y=np.linspace(-0.15, 0.15, 61))
+    assert float(bp.fwhm(ds.p, dim="y")) == pytest.approx(0.1, rel=1e-4)
+
+
+@pytest.mark.parametrize("beam", [ELLIPSE, bp.GaussianBeam(0.1, azimuth=10.0), bp.GaussianBeam(0.1, y0=0.1)])
+@pytest.mark.parametrize("ask", [
+    lambda beam: bp.field(SLAB, beam, 2500.0, 0.0, 0.1),
+    lambda beam: bp.beam_width(SLAB, beam, 2500.0),
+    lambda beam: bp.beam_measures(SLAB, beam, 2500.0),
+    lambda beam: bp.fem.field(SLAB, beam, 2500.0, np.linspace(-1, 1, 11), [0.1], 2.0),
+])  # fmt: skip
+def test_a_beam_of_three_dimensions_needs_y(beam, ask):
+    with pytest.raises(ValueError, match=r"^beam: expected one on which nothing depends on y.*y="):
+        ask(beam)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"boundary": "periodic"}, "boundary: expected 'open' where y is given"),
+        ({"boundary": "closed"}, "boundary: expected 'open' or 'periodic'"),
+        ({"period": 2.0}, "period: expected none"),
+        ({"variables": "v_x"}, "variables: expected 'p' alone where y is given"),
+        ({"variables": ["p", "v_z"]}, "variables: expected 'p' alone where y is given"),
+        ({"y": "wide"}, "y: expected"),
+        ({"y": np.zeros((2, 2))}, "y: expected"),
+        ({"y": np.nan}, "y: expected"),
+        ({"azimuth": [0.0, 1.0]}, "azimuth: expected"),
+        ({"azimuth": np.inf}, "azimuth: expected"),
+        ({"z": -0.1}, "z: expected positions not in front of the launch plane"),
+        ({"beam": bp.GaussianBeam(0.1, form="rotated")}, "form: expected 'launch' with y"),
+        ({"beam": bp.Slits(0.01, 0.04, 2, -0.1)}, "beam: expected a GaussianBeam or a Piston where y is given"),
+        ({"slab": bp.Slab.uniform(bp.Fluid(1.0, 1.4e5, density_x=2.0), 0.1)}, "density_x: expected none, or density"),
+        ({"slab": bp.lmmd_emt_slab(SLAB)}, "density_x: expected none, or density"),
+        (
+            {"slab": bp.Slab.uniform(bp.AIR, 0.1, after=bp.Fluid(-1.0, -1.4e5))},
+            "slab: expected half-spaces that carry forward waves where y is given",
+        ),
+    ],
+)
+def test_refusals_name_the_argument(changes, message):
+    given = {"slab": SLAB, "beam": ROUND, "frequency": 2500.0, "x": 0.0, "z": 0.1, "y": 0.0} | changes
+    with pytest.raises(ValueError, match=f"^{message}"):
+        bp.field(**given)
+
+
+def test_azimuth_without_y_is_refused():
+    with pytest.raises(ValueError, match=r"^azimuth: expected none without y, got 30\.0"):
+        bp.field(SLAB, ROUND, 2500.0, 0.0, 0.1, azimuth=30.0)
+
+
+@pytest.mark.parametrize("fwhm", [(0.1, 0.2, 0.3), (0.1,), (0.1, -0.2), (0.1, "wide"), (0.1, np.nan)])
+def test_widths_are_checked(fwhm):
+    with pytest.raises(ValueError, match=r"^fwhm: expected"):
+        bp.GaussianBeam(fwhm)
+
+
+def test_density_x_that_is_density_passes():
+    fluid = bp.Fluid(2.0, 1.4e5, density_x=2.0)
+    same = [
+        bp.field(bp.Slab.uniform(f, 0.1), ROUND, 2500.0, 0.1, 0.2, y=0.1).p.item()
+        for f in (fluid, bp.Fluid(2.0, 1.4e5))
+    ]
+    assert same[0] == same[1]
+
+
+def test_an_rtol_that_is_not_kept_is_warned_of():
+    """A beam of 30 000 wavelengths of air: phases of 2e5 rad are known to 4e-11."""
+    with pytest.warns(bp.AccuracyWarning, match="estimated error"):
+        bp.field(bp.Slab.uniform(bp.AIR, 0.1), bp.GaussianBeam(20.0), 2500.0, 0.0, 4e3, y=0.0, rtol=1e-12)
+
+
+def test_nothing_else_warns():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        bp.field(SLAB, ELLIPSE, 2500.0, np.linspace(-1, 1, 21), [0.1, 0.2], y=[0.0, 0.5])
+
+
+@pytest.mark.parametrize("beam", [bp.GaussianBeam(0.001), bp.Piston(0.1, z0=-1e-4)])
+def test_too_many_plane_waves_are_refused(beam):
+    """A beam of a hundredth of a wavelength forty metres aside, and a sharp edge next to its plane: at once, with what to do."""
+    with pytest.raises(
+        ValueError, match=r"^rtol: 1e-08 needs too many plane waves in three dimensions.*z a little behind z0"
+    ):
+        bp.field(SLAB, beam, 2500.0, [-40.0, 40.0], 0.0, y=0.0)
