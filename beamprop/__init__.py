@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from .sources.piston import Piston
     from .sources.profile import Profile
     from .sources.slits import Slits
+    from .sources.source_plane import SourcePlane
     from .study.sweep import sweep
 
 _HOMES = {
@@ -71,6 +72,7 @@ _HOMES = {
     "sources.piston": ("Piston",),
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
+    "sources.source_plane": ("SourcePlane",),
     "api.beam_measures": ("beam_measures",),
     "api.beam_width": ("beam_width",),
     "api.bloch": ("bloch",),
@@ -104,6 +106,7 @@ __all__ = [
     "Profile",
     "Slab",
     "Slits",
+    "SourcePlane",
     "Tabulated",
     "__version__",
     "beam_measures",

@@ -30,6 +30,7 @@ from ..sources.gaussian import GaussianBeam
 from ..sources.piston import Piston
 from ..sources.profile import Profile
 from ..sources.slits import Slits
+from ..sources.source_plane import SourcePlane
 from .labels import label
 
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
@@ -47,6 +48,7 @@ _RECORDS: dict[str, type] = {
         Piston,
         Profile,
         Slits,
+        SourcePlane,
         Tabulated,
         *effective.FUNCTIONS,
         *attenuation.FUNCTIONS,

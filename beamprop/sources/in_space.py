@@ -15,6 +15,10 @@ class SpaceBeam(Beam, Protocol):
     """A source in three dimensions, about (0, 0); as a `Beam` it is its own section through the spectrum along the azimuth.
 
     The spectrum is ``S(kx, ky) = integral p(x, y, z0) exp(-i kx x - i ky y) dx dy``; tolerances are relative.
+
+    Notes
+    -----
+    A source may have ``mean_size(k, k0)`` beside these, see `mean_size`.
     """
 
     @property
@@ -41,6 +45,20 @@ def unit_vector(azimuth: float) -> tuple[float, float]:
     for _ in range(int(quarters) % 4):
         x, y = -y, x
     return x, y
+
+
+#: Directions over which |S| is averaged.
+AVERAGED = 256
+
+
+def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
+    """|S| averaged over the directions of wavenumbers of the length k (n,), by the source's own method if it has it."""
+    own = getattr(beam, "mean_size", None)
+    if own is not None:
+        return np.asarray(own(k, k0))
+    turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(AVERAGED) / AVERAGED
+    kx, ky = (np.multiply.outer(k, along) for along in (np.cos(turn), np.sin(turn)))
+    return np.asarray(np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1))
 
 
 #: Directions on an ellipse in which its largest distance from the origin is looked for: between two the distance differs by
