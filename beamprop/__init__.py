@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
+    from .sources.bowl import Bowl
     from .sources.gaussian import GaussianBeam
     from .sources.piston import Piston
     from .sources.profile import Profile
@@ -68,6 +69,7 @@ _HOMES = {
     "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
+    "sources.bowl": ("Bowl",),
     "sources.gaussian": ("GaussianBeam",),
     "sources.piston": ("Piston",),
     "sources.profile": ("Profile",),
@@ -95,6 +97,7 @@ _MODULES = ("fem", "plot")
 __all__ = [
     "AIR",
     "AccuracyWarning",
+    "Bowl",
     "Cell",
     "Fluid",
     "Gas",

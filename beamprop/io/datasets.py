@@ -26,6 +26,7 @@ from ..media.properties import Tabulated
 from ..media.structures import Cell, Layer, Slab
 from ..media.tolerance import Copy, Tolerance
 from ..sources.base import Beam
+from ..sources.bowl import Bowl
 from ..sources.gaussian import GaussianBeam
 from ..sources.piston import Piston
 from ..sources.profile import Profile
@@ -44,6 +45,7 @@ _RECORDS: dict[str, type] = {
         Slab,
         Tolerance,
         Copy,
+        Bowl,
         GaussianBeam,
         Piston,
         Profile,

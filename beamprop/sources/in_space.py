@@ -18,7 +18,11 @@ class SpaceBeam(Beam, Protocol):
 
     Notes
     -----
-    A source may have ``mean_size(k, k0)`` beside these, see `mean_size`.
+    Members that a source may have beside these:
+
+    * ``mean_size(k, k0)``: see `mean_size`.
+    * ``by_velocity``: whether the spectrum is that of rho c times the normal velocity; of pressure without it.
+    * ``radial_factor(k, kz)``: what the spectrum has to be multiplied with, where that is a function of kz in front as well, at complex k.
     """
 
     @property
