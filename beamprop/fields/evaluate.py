@@ -36,6 +36,10 @@ class Waves(Protocol):
         """Positions on a plane."""
 
     @property
+    def searched_share(self) -> float:
+        """Of the planes of a map, how many at most may be searched for rows: their h is a part of the work saved."""
+
+    @property
     def across(self) -> float:
         """The largest distance from the beams' middle."""
 
@@ -69,6 +73,11 @@ class Superposition(NamedTuple):
     def points(self) -> int:
         """Positions on a plane."""
         return self.x.size
+
+    @property
+    def searched_share(self) -> float:
+        """Half: the response of the planes takes about as long as their sums."""
+        return 0.5
 
     @property
     def across(self) -> float:
@@ -161,7 +170,7 @@ def check_finite(p: np.ndarray) -> None:
         )
 
 
-#: A map is made from rows of low rank from so many planes on (of which at most half may be searched) and so many positions (with fewer,
+#: A map is made from rows of low rank from so many planes on (of which `searched_share` may be searched) and so many positions (with fewer,
 #: the response of the planes takes longer than their sums), so many planes at a time: (2048, n) of h at the chosen columns.
 MANY_PLANES, MANY_POINTS, TOGETHER = 200, 64, 2048
 #: Among how many planes the rows are chosen, and in each medium at least: about twice and once as many as may be chosen, which is a
@@ -229,7 +238,7 @@ def _fill_low_rank(
     searched, compared = _spread_planes(transfer.slab.faces, z)
     if quadrature.checked_planes is not None:  # among them those that are nearly dark, where small errors count
         compared = np.union1d(compared, np.flatnonzero(np.isin(z, quadrature.checked_planes)))
-    if 2 * searched.size > z.size:
+    if searched.size > waves.searched_share * z.size:
         return None
     h = transfer(k, z[np.concatenate([searched, compared])])
     with np.errstate(over="ignore", invalid="ignore"):  # a plane wave of a periodic sum may meet a guided mode

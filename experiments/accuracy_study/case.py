@@ -20,3 +20,16 @@ class Case(NamedTuple):
     x: np.ndarray
     z: np.ndarray
     rtol: float
+
+
+class SpaceCase(NamedTuple):
+    """A question in three dimensions, the class that it belongs to, and its rtol."""
+
+    kind: str
+    slab: bp.Slab
+    beam: bp.GaussianBeam
+    frequency: float
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    rtol: float

@@ -2,31 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 import beamprop as bp
 
+from ..case import SpaceCase
 from .first import draw_angle, draw_planes
 from .slabs import C_AIR, SLABS, WATER, log_uniform
 
 SEED = 20250301
 #: All classes of slabs but those that are refused by name in three dimensions.
 KINDS = [kind for kind in SLABS if kind != "density_x infinite"]
-
-
-class SpaceCase(NamedTuple):
-    """One question, the class that it belongs to, and its rtol."""
-
-    kind: str
-    slab: bp.Slab
-    beam: bp.GaussianBeam
-    frequency: float
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    rtol: float
 
 
 def _has_direction(slab: bp.Slab) -> bool:

@@ -11,13 +11,14 @@ import numpy as np
 
 import beamprop as bp
 
-from ..case import Case
-from ..cases.in_space import SpaceCase
+from ..case import Case, SpaceCase
 from . import quadrature
 from .quadrature import EPS, Setting, Truth
 
 #: The most products of nodes, directions and positions that a quadrature may take: some 10 s.
 MOST_TERMS = 3e8
+#: Rays that go farther than this over 1/k0 are not followed.
+MOST_RADIANS = 400.0
 
 
 class Round:
@@ -41,18 +42,36 @@ def _flat(case: SpaceCase, radii: np.ndarray) -> Case:
     return Case(case.kind, "Gaussian, launch", case.slab, beam, case.frequency, radii, case.z, case.rtol)
 
 
-def _positions(case: SpaceCase, s: Setting, source: Round) -> tuple[np.ndarray, np.ndarray]:
-    """The requested ones from the middle, row by row; then the middle's own and those where rays land, (P,) each."""
+def _positions(case: SpaceCase, source: Round) -> tuple[np.ndarray, np.ndarray]:
+    """The requested ones from the middle, row by row; then the middle's own, (P,) each."""
     x, y = (v.ravel() for v in np.meshgrid(case.x - case.beam.x0, case.y - case.beam.y0))
     half = np.array([-0.3, 0.0, 0.3])
-    own = [(u * source.a[0], v * source.a[1]) for u in half for v in half]
-    k, step = np.clip(source.k + np.array([-1, 0, 1]) / max(source.a), -0.98 * s.m.k0, 0.98 * s.m.k0), 1e-5 * s.m.k0
-    ends = [s.m.response(np.abs(k + side * step) + 0j, case.z, case.beam.z0) for side in (-1, 1)]
+    u, v = (w.ravel() for w in np.meshgrid(half * source.a[0], half * source.a[1]))
+    return np.append(x, u), np.append(y, v)
+
+
+def _elsewhere(case: SpaceCase, s: Setting, source: Round, contour: tuple[float, list[complex]]) -> np.ndarray:
+    """|p| where nine rays land on each plane, (Z,), roughly: errors are over the largest |p| of a plane."""
+    step, wide = 1e-5 * s.m.k0, 3 / max(source.a)
+    k = np.clip(source.k + wide * np.linspace(-1, 1, 9), -0.98 * s.m.k0, 0.98 * s.m.k0)
+    low, high = (s.m.response(np.abs(k + side * step) + 0j, case.z, case.beam.z0) for side in (-1, 1))
     with np.errstate(all="ignore"):
-        landed = np.nan_to_num(-np.angle(ends[1] / ends[0]) / (2 * step)).ravel()
-    most = 3 * max(np.hypot(x, y).max(), max(source.a))
-    own += [(r * source.along[0], r * source.along[1]) for r in landed if abs(r) < most]
-    return np.append(x, [p[0] for p in own]), np.append(y, [p[1] for p in own])
+        r = np.nan_to_num(-np.angle(high / low) / (2 * step)).ravel()
+    r = np.unique(np.round(r[np.abs(r) * s.m.k0 < MOST_RADIANS], 6))
+    if not r.size:
+        return np.zeros(case.z.size)
+    far = quadrature.setting(_flat(case, np.abs(r)), np.array([0.0]))._replace(reach=s.reach)
+    nodes = quadrature.nodes_on_contour(far, 0, *contour)
+    count = _directions(far, nodes[0])
+    if float(nodes[0].size) * count * r.size > MOST_TERMS:
+        return np.zeros(case.z.size)
+    p = _sum(far, source, nodes, (r * source.along[0], r * source.along[1]), count)
+    return np.nan_to_num(np.abs(p).max(axis=1))
+
+
+def _directions(s: Setting, k: np.ndarray) -> int:
+    """How many the trapezoid rule takes."""
+    return int(60 + 1.2 * float(np.max(np.abs(k.real))) * (s.extent + s.reach))
 
 
 def _sum(
@@ -74,24 +93,24 @@ def truth(case: SpaceCase) -> Truth | str:
     """The field by two quadratures that agree to a tenth of rtol; or why there is none."""
     first = quadrature.setting(_flat(case, np.array([0.0])), np.array([0.0]))
     source = Round(case.beam, first.m.k0)
-    x, y = _positions(case, first, source)
+    x, y = _positions(case, source)
     flat = _flat(case, np.hypot(x, y))
     s = quadrature.setting(flat, np.array([0.0]))._replace(reach=6.1 * max(source.a))
     wrong, shallow = quadrature.misplaced_modes(s)
     if wrong is None:
         return "backward modes not located"
     before, why = None, "too many terms"
+    elsewhere = _elsewhere(case, s, source, (shallow, wrong))
     for step in range(3):
         k, w = quadrature.nodes_on_contour(s, step, shallow, wrong)
-        far = float(np.max(np.abs(k.real))) * (s.extent + s.reach)
-        count = int((1.0 + 0.25 * step) * (60 + 1.2 * far))
+        count = int((1.0 + 0.25 * step) * _directions(s, k))
         if float(k.size) * count * x.size > MOST_TERMS:
             return why
         p = _sum(s, source, (k, w), (x, y), count)
         if not np.all(np.isfinite(p)):
             return "not finite"
         if before is not None:
-            scale = np.abs(p).max(axis=1)
+            scale = np.maximum(np.abs(p).max(axis=1), elsewhere)
             error = np.abs(p - before).max(axis=1) / np.where(scale > quadrature.SILENT, scale, np.inf)
             periods = sum(len(layers) * n for layers, n in s.m.segments)
             error = error + EPS * (periods + s.m.k0 * (s.extent + s.path))

@@ -13,7 +13,8 @@ import xarray as xr
 
 import beamprop as bp
 
-from ..cases.in_space import KINDS, SpaceCase, space_case
+from ..case import SpaceCase
+from ..cases.in_space import KINDS, space_case
 from ..reference import in_space
 from .comparison import REFUSAL, error_of, in_processes
 
