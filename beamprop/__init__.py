@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
+    from .sources.array import Array
     from .sources.bowl import Bowl
     from .sources.gaussian import GaussianBeam
     from .sources.piston import Piston
@@ -69,6 +70,7 @@ _HOMES = {
     "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
+    "sources.array": ("Array",),
     "sources.bowl": ("Bowl",),
     "sources.gaussian": ("GaussianBeam",),
     "sources.piston": ("Piston",),
@@ -97,6 +99,7 @@ _MODULES = ("fem", "plot")
 __all__ = [
     "AIR",
     "AccuracyWarning",
+    "Array",
     "Bowl",
     "Cell",
     "Fluid",

@@ -25,7 +25,7 @@ def question_in_space(
     x, y, z = (validate.axis(v, name) for v, name in zip(places, "xyz", strict=False))
     in_space: Any = getattr(beam, "in_space", None)
     if in_space is None:
-        raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl or SourcePlane where y is given", beam)
+        raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given", beam)
     source_beam: Any = beam
     azimuth = source_beam.azimuth if places[3] is None else validate.as_number(places[3], "azimuth")
     if np.min(z) < beam.z0:

@@ -25,6 +25,7 @@ from ..media.membranes import Membrane
 from ..media.properties import Tabulated
 from ..media.structures import Cell, Layer, Slab
 from ..media.tolerance import Copy, Tolerance
+from ..sources.array import Array
 from ..sources.base import Beam
 from ..sources.bowl import Bowl
 from ..sources.gaussian import GaussianBeam
@@ -45,6 +46,7 @@ _RECORDS: dict[str, type] = {
         Slab,
         Tolerance,
         Copy,
+        Array,
         Bowl,
         GaussianBeam,
         Piston,
