@@ -129,3 +129,12 @@ def test_nothing_else_warns():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         bp.field(SLAB, ELLIPSE, 2500.0, np.linspace(-1, 1, 21), [0.1, 0.2], y=[0.0, 0.5])
+
+
+@pytest.mark.parametrize("beam", [bp.GaussianBeam(0.001), bp.Piston(0.1, z0=-1e-4)])
+def test_too_many_plane_waves_are_refused(beam):
+    """A beam of a hundredth of a wavelength forty metres aside, and a sharp edge next to its plane: at once, with what to do."""
+    with pytest.raises(
+        ValueError, match=r"^rtol: 1e-08 needs too many plane waves in three dimensions.*z a little behind z0"
+    ):
+        bp.field(SLAB, beam, 2500.0, [-40.0, 40.0], 0.0, y=0.0)

@@ -13,7 +13,17 @@ from .check_points import Checks
 from .error import Compared
 from .paths import BentPlan
 from .quadrature import Quadrature
-from .search import Planned, Search, pair_of_contours, refusal, shallower, too_many, too_many_plane_waves, with_poles
+from .search import (
+    Planned,
+    Search,
+    pair_of_contours,
+    refusal,
+    shallower,
+    too_many,
+    too_many_in_space,
+    too_many_plane_waves,
+    with_poles,
+)
 
 #: The most plans that are tried before the requested rtol is given up: a band that grows by half each time grows 1.5^13 = 200-fold.
 ATTEMPTS = 14
@@ -122,7 +132,9 @@ def _without_any(search: Search, planned: Planned) -> Quadrature:
     """A contour in stretches for a periodic slab whose poles cannot be told apart, or the refusal of the question."""
     if planned.unclear and search.slab.periodic and search.checks.places.on_a_line:
         return in_stretches.quadrature_in_stretches(search, crowded=True)
-    raise ValueError(refusal(search) if planned.unclear else too_many(search.rtol))
+    if planned.unclear:
+        raise ValueError(refusal(search))
+    raise ValueError(too_many(search.rtol) if search.checks.places.on_a_line else too_many_in_space(search.rtol))
 
 
 def _quadrature(planned: Planned, compared: Compared) -> Quadrature:

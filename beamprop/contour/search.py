@@ -144,3 +144,11 @@ def too_many(rtol: float) -> str:
         "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
         "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
     )
+
+
+def too_many_in_space(rtol: float) -> str:
+    """The same in three dimensions, where the lattice of (kx, ky) has an end too."""
+    return (
+        f"rtol: {rtol:g} needs too many plane waves in three dimensions for this beam and these positions: ask for positions nearer to the "
+        "beam, for z a little behind z0 where the beam is narrow or its edge sharp, for a shorter way, or a higher rtol"
+    )
