@@ -44,10 +44,13 @@ if TYPE_CHECKING:
     from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
+    from .sources.array import Array
+    from .sources.bowl import Bowl
     from .sources.gaussian import GaussianBeam
     from .sources.piston import Piston
     from .sources.profile import Profile
     from .sources.slits import Slits
+    from .sources.source_plane import SourcePlane
     from .study.sweep import sweep
 
 _HOMES = {
@@ -69,10 +72,13 @@ _HOMES = {
     "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
     "media.effective": ("lmmd_emt", "lmmd_emt_slab", "standard_emt", "wood_mixture"),
+    "sources.array": ("Array",),
+    "sources.bowl": ("Bowl",),
     "sources.gaussian": ("GaussianBeam",),
     "sources.piston": ("Piston",),
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
+    "sources.source_plane": ("SourcePlane",),
     "api.beam_measures": ("beam_measures",),
     "api.beam_width": ("beam_width",),
     "api.bloch": ("bloch",),
@@ -95,6 +101,8 @@ _MODULES = ("fem", "plot")
 __all__ = [
     "AIR",
     "AccuracyWarning",
+    "Array",
+    "Bowl",
     "Cell",
     "Fluid",
     "Gas",
@@ -106,6 +114,7 @@ __all__ = [
     "Profile",
     "Slab",
     "Slits",
+    "SourcePlane",
     "Tabulated",
     "__version__",
     "beam_measures",

@@ -81,7 +81,10 @@ def test_a_beam_of_three_dimensions_needs_y(beam, ask):
         ({"azimuth": np.inf}, "azimuth: expected"),
         ({"z": -0.1}, "z: expected positions not in front of the launch plane"),
         ({"beam": bp.GaussianBeam(0.1, form="rotated")}, "form: expected 'launch' with y"),
-        ({"beam": bp.Slits(0.01, 0.04, 2, -0.1)}, "beam: expected a GaussianBeam or a Piston where y is given"),
+        (
+            {"beam": bp.Slits(0.01, 0.04, 2, -0.1)},
+            "beam: expected a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given",
+        ),
         ({"slab": bp.Slab.uniform(bp.Fluid(1.0, 1.4e5, density_x=2.0), 0.1)}, "density_x: expected none, or density"),
         ({"slab": bp.lmmd_emt_slab(SLAB)}, "density_x: expected none, or density"),
         (

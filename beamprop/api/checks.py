@@ -43,6 +43,19 @@ def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "
         )
 
 
+def warn_if_not_ended(beam: Any, k0: float, way: float, rtol: float) -> None:
+    """Warn, with the numbers, of samples of a source that stop above rtol; `way` [m] is that to the nearest plane in front of the slab."""
+    not_ended = getattr(beam, "not_ended", None)
+    shares = {} if not_ended is None else {at: share for at, share in not_ended(k0, way).items() if share > rtol}
+    if shares:
+        warnings.warn(
+            f"p: expected samples that end to rtol {rtol:.1e} of their largest, got {', '.join(f'{s:.1e} {at}' for at, s in shares.items())}: "
+            "what lies beyond is left out",
+            AccuracyWarning,
+            stacklevel=3,
+        )
+
+
 class Beams(NamedTuple):
     """What questions about beams share: checked arguments, axes as they were given (scalars stay scalars)."""
 

@@ -42,7 +42,7 @@ def field(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
-        With y a GaussianBeam, circular or elliptical, or a Piston.
+        With y a GaussianBeam, circular or elliptical, a Piston, Bowl, SourcePlane or Array.
     frequency : float or 1-D array, Hz
     x, z : float or 1-D array, m
         Any positions; z not in front of the launch plane ``beam.z0``.

@@ -25,7 +25,7 @@ def question_in_space(
     x, y, z = (validate.axis(v, name) for v, name in zip(places, "xyz", strict=False))
     in_space: Any = getattr(beam, "in_space", None)
     if in_space is None:
-        raise validate.refuse("beam", "a GaussianBeam or a Piston where y is given", beam)
+        raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given", beam)
     source_beam: Any = beam
     azimuth = source_beam.azimuth if places[3] is None else validate.as_number(places[3], "azimuth")
     if np.min(z) < beam.z0:
@@ -33,6 +33,9 @@ def question_in_space(
     _refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat
+    checks.warn_if_not_ended(
+        beam, np.max(checks.k0(slab, frequencies)), min(float(np.min(z)), 0.0) - beam.z0, beams.rtol
+    )
     flat_z, flat_y, flat_x = np.atleast_1d(z), np.atleast_1d(y) - source_beam.y0, np.atleast_1d(x) - source_beam.x0
     question = SpaceQuestion(slab, in_space(azimuth), frequencies, angles, flat_z, flat_y, flat_x, beams.rtol)
     axes = beams.axes | {"z": z, "y": y, "x": x}

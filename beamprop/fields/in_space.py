@@ -100,6 +100,9 @@ def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:
     transfer = transfer_function.through(s, question.source.z0)
     if driven_by_velocity(question.source):
         transfer = transfer_function.of_velocity(transfer)
+    factor = getattr(question.source, "radial_factor", None)
+    if factor is not None:
+        transfer = transfer_function.of_depth(transfer, factor)
     quadrature = choose_in_space(s, beams, transfer, (question.x, question.y), question.z, question.rtol)
     return PreparedInSpace(question, SpaceWaves(s.k0, beams, quadrature, question.y, question.x), transfer)
 

@@ -26,11 +26,14 @@ from ..media.membranes import Membrane
 from ..media.properties import Tabulated
 from ..media.structures import Cell, Layer, Slab
 from ..media.tolerance import Copy, Tolerance
+from ..sources.array import Array
 from ..sources.base import Beam
+from ..sources.bowl import Bowl
 from ..sources.gaussian import GaussianBeam
 from ..sources.piston import Piston
 from ..sources.profile import Profile
 from ..sources.slits import Slits
+from ..sources.source_plane import SourcePlane
 from .labels import label
 
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
@@ -44,10 +47,13 @@ _RECORDS: dict[str, type] = {
         Slab,
         Tolerance,
         Copy,
+        Array,
+        Bowl,
         GaussianBeam,
         Piston,
         Profile,
         Slits,
+        SourcePlane,
         Tabulated,
         *effective.FUNCTIONS,
         *attenuation.FUNCTIONS,

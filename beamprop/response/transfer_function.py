@@ -50,6 +50,15 @@ def of_velocity(transfer: TransferFunction) -> TransferFunction:
     return TransferFunction(transfer.slab, pressure)
 
 
+def of_depth(transfer: TransferFunction, factor: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> TransferFunction:
+    """The same times a `factor` of kx and kz in front, (n,) each, which is no entire function of kx: that of a source with a depth."""
+
+    def pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+        return transfer.pressure(s, kx, z) * factor(kx, s.kz_before(kx)[0])
+
+    return TransferFunction(transfer.slab, pressure)
+
+
 def free(s: SampledSlab) -> TransferFunction:
     """Propagation over the distance z in the medium in front alone."""
     return TransferFunction(s, _without_slab)

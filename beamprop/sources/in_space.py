@@ -15,6 +15,14 @@ class SpaceBeam(Beam, Protocol):
     """A source in three dimensions, about (0, 0); as a `Beam` it is its own section through the spectrum along the azimuth.
 
     The spectrum is ``S(kx, ky) = integral p(x, y, z0) exp(-i kx x - i ky y) dx dy``; tolerances are relative.
+
+    Notes
+    -----
+    Members that a source may have beside these:
+
+    * ``mean_size(k, k0)``: see `mean_size`.
+    * ``by_velocity``: whether the spectrum is that of rho c times the normal velocity; of pressure without it.
+    * ``radial_factor(k, kz)``: what the spectrum has to be multiplied with, where that is a function of kz in front as well, at complex k.
     """
 
     @property
@@ -41,6 +49,20 @@ def unit_vector(azimuth: float) -> tuple[float, float]:
     for _ in range(int(quarters) % 4):
         x, y = -y, x
     return x, y
+
+
+#: Directions over which |S| is averaged.
+AVERAGED = 256
+
+
+def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
+    """|S| averaged over the directions of wavenumbers of the length k (n,), by the source's own method if it has it."""
+    own = getattr(beam, "mean_size", None)
+    if own is not None:
+        return np.asarray(own(k, k0))
+    turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(AVERAGED) / AVERAGED
+    kx, ky = (np.multiply.outer(k, along) for along in (np.cos(turn), np.sin(turn)))
+    return np.asarray(np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1))
 
 
 #: Directions on an ellipse in which its largest distance from the origin is looked for: between two the distance differs by

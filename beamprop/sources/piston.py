@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from .. import validate
-from ..validate import as_complex, as_number
+from ..validate import as_number
+from .on_normal import OnNormal
 
 #: Of the envelope of 2 J1(v)/v at large v, 2 sqrt(2/pi) v^-1.5.
 ENVELOPE = 2 * math.sqrt(2 / math.pi)
 
 
 @dataclass(frozen=True)
-class Piston:
+class Piston(OnNormal):
     """A circular piston transducer, a source in three dimensions: fields of it are asked with y.
 
     Parameters
@@ -54,54 +55,12 @@ class Piston:
     def __post_init__(self) -> None:
         object.__setattr__(self, "radius", as_number(self.radius, "radius", positive=True))
         validate.word(self.baffle, "baffle", "rigid", "soft")
-        pressure = as_complex(self.pressure, "pressure", "a finite number")
-        if not (math.isfinite(abs(pressure)) and pressure != 0):
-            raise validate.refuse("pressure", "a finite number other than 0", self.pressure)
-        object.__setattr__(self, "pressure", pressure)
-        for name in ("x0", "y0", "z0"):
-            object.__setattr__(self, name, as_number(getattr(self, name), name))
-        if self.z0 > 0:
-            raise ValueError(f"z0: expected a plane in front of the slab, z0 <= 0, got {self.z0!r}")
-
-    @property
-    def angle(self) -> float:
-        """Along the normal [degree]."""
-        return 0.0
-
-    @property
-    def azimuth(self) -> float:
-        """None that matters [degree]."""
-        return 0.0
-
-    @property
-    def centre(self) -> float:
-        """x0 [m]."""
-        return self.x0
-
-    @property
-    def entire(self) -> bool:
-        """Yes: it has an end in space."""
-        return True
-
-    @property
-    def in_space_only(self) -> bool:
-        """Yes."""
-        return True
+        self._check_place()
 
     @property
     def by_velocity(self) -> bool:
         """Whether its spectrum is that of rho c times the normal velocity."""
         return self.baffle == "rigid"
-
-    def in_space(self, azimuth: float) -> Piston:
-        """The piston about (0, 0)."""
-        return replace(self, x0=0.0, y0=0.0)
-
-    def at_angle(self, angle: float) -> Piston:
-        """Itself, along the normal alone."""
-        if angle:
-            raise validate.refuse("angle", "0 with a Piston, which is not steered", angle)
-        return self
 
     def _of_radius(self, k: np.ndarray) -> np.ndarray:
         """pressure pi radius^2 times 2 J1(v)/v, v = k radius."""
@@ -112,38 +71,18 @@ class Piston:
         ratio = 2 * jv(1, np.where(small, 1.0, v)) / np.where(small, 1.0, v)
         return np.asarray(self.pressure * math.pi * self.radius**2 * np.where(small, 1 - v * v / 8, ratio))
 
-    def spectrum(self, kx: np.ndarray, k0: float) -> np.ndarray:
-        """S(kx, 0) about the middle."""
-        return self._of_radius(kx)
-
-    def spectrum_at(self, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:
+    def spectrum_at(self, kx: np.ndarray, ky: Any, k0: float) -> np.ndarray:
         """S(kx, ky) about the middle."""
-        return self._of_radius(np.hypot(kx, ky))
-
-    def profile(self, x: np.ndarray, k0: float) -> np.ndarray:
-        """The pressure, or rho c times the velocity, along x through the middle."""
-        return np.where(np.abs(np.asarray(x) - self.x0) <= self.radius, self.pressure, 0.0)
+        return self._of_radius(np.sqrt(kx * kx + ky * ky))
 
     def reach(self, tolerance: float) -> float:
         """Its radius."""
         return self.radius
 
-    def half_widths(self, tolerance: float) -> tuple[float, float]:
-        """Its radius, twice."""
-        return self.radius, self.radius
-
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
         """Where the envelope of S has fallen to the tolerance."""
         end = (ENVELOPE / tolerance) ** (2 / 3) / self.radius
         return -end, end
-
-    def box(self, k0: float, tolerance: float) -> np.ndarray:
-        """Without end: what arrives ends before."""
-        return np.array([[-np.inf, np.inf], [-np.inf, np.inf]])
-
-    def rings(self, k0: float, tolerance: float) -> tuple[float, float]:
-        """Without end."""
-        return 0.0, math.inf
 
 
 def driven_by_velocity(source: Any) -> bool:

@@ -17,6 +17,22 @@ from .columns import read_columns
 EVEN = 1e-6
 
 
+def on_even_positions(x: np.ndarray, p: np.ndarray, axis: int, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Samples along an axis as they are, or on even positions of the finest spacing by a cubic spline."""
+    steps = np.diff(x)
+    if np.ptp(steps) <= EVEN * steps.min():
+        return x, p
+    from scipy.interpolate import CubicSpline
+
+    count = float((x[-1] - x[0]) / steps.min()) + 1
+    beside = p.size / p.shape[axis]
+    memory.check(
+        name, 200.0 * count * beside, f"{count:.3g} even steps as small as the least", f"space {name} more evenly"
+    )
+    even = np.linspace(x[0], x[-1], round(count))
+    return even, CubicSpline(x, p, axis=axis)(even)
+
+
 @dataclass(frozen=True, eq=False)
 class Profile(Tilted):
     """Any sampled pressure profile on the launch plane, zero outside its samples.
@@ -61,14 +77,7 @@ class Profile(Tilted):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
             raise ValueError("p: expected a profile that is not zero everywhere, got zeros")
-        steps = np.diff(x)
-        if np.ptp(steps) > EVEN * steps.min():
-            from scipy.interpolate import CubicSpline
-
-            count = float((x[-1] - x[0]) / steps.min()) + 1
-            memory.check("x", 200.0 * count, f"{count:.3g} even steps as small as the least", "space x more evenly")
-            even = np.linspace(x[0], x[-1], round(count))
-            x, p = even, CubicSpline(x, p)(even)
+        x, p = on_even_positions(x, p, 0, "x")
         for key, array in (("x", x), ("p", p)):
             array.setflags(write=False)
             object.__setattr__(self, key, array)

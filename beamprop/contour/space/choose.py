@@ -93,7 +93,7 @@ def _extent(s: SampledSlab, sources: AngleInterpolation, sheet: Sheet, z: np.nda
     band = min(spectrum.high, arriving(s, beam.z0, z, tolerance))
     if not math.isfinite(band):
         raise ValueError(
-            f"z: expected positions behind the launch plane z0 = {beam.z0} of a source with a sharp edge, got {float(z.min())}: "
+            f"z: expected positions behind the launch plane z0 = {beam.z0:.9g} of a source with a sharp edge, got {float(z.min()):.9g}: "
             "its spectrum does not end there; and behind the slab where z0 is its near face"
         )
     length = math.hypot(*sheet.lengths(sources, tolerance))

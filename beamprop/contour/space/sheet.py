@@ -9,7 +9,7 @@ import numpy as np
 
 from ...response.transfer_function import TransferFunction
 from ...sources.angles import AngleInterpolation
-from ...sources.in_space import unit_vector
+from ...sources.in_space import mean_size, unit_vector
 from .. import paths, peak_outside
 from ..check_points import Amplitudes, Checks
 from ..paths import BentPlan, Contour
@@ -149,9 +149,7 @@ class Sheet(NamedTuple):
     def amplitudes(self, k0: float, sources: AngleInterpolation, contour: Contour) -> Amplitudes:
         """Bounds of what each node adds to |p|: |w| times the mean of |S| over directions, once; (B, n) each."""
         beams: list[Any] = [sources.at(float(a)) for a in sources.angles]
-        k = contour.k.real[:, None]
-        turn = np.radians(beams[0].azimuth) + 2 * np.pi * np.arange(DIRECTIONS) / DIRECTIONS
-        means = [np.abs(b.spectrum_at(k * np.cos(turn), k * np.sin(turn), k0)).mean(axis=1) for b in beams]
+        means = [mean_size(beam, contour.k.real, k0) for beam in beams]
         right = np.abs(contour.weight) * np.array(means) / (2 * np.pi)
         return right, np.zeros(right.shape)
 
@@ -204,8 +202,8 @@ def landed(
     return x * along, y * along
 
 
-#: Directions over which |S| is averaged; and positions along x and y of the rough grid around.
-DIRECTIONS, AROUND = 256, 41
+#: Positions along x and y of the rough grid around.
+AROUND = 41
 #: What `Sheet.fields` does not need.
 NO_AMPLITUDES = (np.empty(0), np.empty(0))
 
