@@ -31,6 +31,7 @@ ORDER = [
     "plot",
     "parameters",
     "study",
+    "explorer",
     "cli",
     "__main__",
 ]
@@ -54,6 +55,7 @@ ONLY = {
     "plot": {"validate"},
     "parameters": {"memory", "validate", "media", "sources"},
     "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
+    "explorer": {"memory", "validate", "sources", "io", "plot", "parameters", "study"},
 }
 
 
