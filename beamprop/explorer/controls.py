@@ -14,9 +14,9 @@ from ..study import questions
 from ..study.files import StudyFile
 
 Description = dict[str, Any]
-#: Beyond its slider a value may be typed, up to so many times the slider's end.
+#: Beyond its slider a value may be typed, up to so many times the slider's end, down to that part of it.
 TYPED = 100.0
-MOST_PERIODS, MOST_LAYERS = 100_000, 1000
+MOST_PERIODS, MOST_LAYERS = 100_000, 50_000
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,6 @@ class Control:
     high: float = 1.0
     ratio: bool = False  #: whether equal steps of the slider are equal ratios
     words: tuple[str, ...] = ()
-    given: bool = False  #: whether the study states it: it is then stated in what is handed out, too
     #: What may be typed at most; of an angle the slider's end, of others more.
     least: float = -math.inf
     most: float = math.inf
@@ -132,7 +131,8 @@ def _bounded(control: Control) -> Control:
     if control.kind not in ("number", "count"):
         return control
     far = TYPED * max(abs(control.low), abs(control.high), abs(control.value))
-    below = -far if control.low < 0 else control.low if control.kind == "count" else 0.0
+    near = control.low / TYPED if control.ratio else 0.0
+    below = -far if control.low < 0 else control.low if control.kind == "count" else near
     least = below if control.least == -math.inf else control.least
     return replace(control, least=least, most=far if control.most == math.inf else control.most)
 
@@ -174,9 +174,9 @@ def _of_beam(document: Mapping[str, Any], design: parameters.Design) -> Iterator
     )
     yield Control("beam.x0", "Middle x₀", value=values["x0"], low=-3 * wave, high=3 * wave, **about)
     words = parameters.BEAM["form"].words
-    yield Control("beam.form", "Oblique form", group, values["form"], "word", words=words, given="form" in beam)
+    yield Control("beam.form", "Oblique form", group, values["form"], "word", words=words)
     words = parameters.BEAM["width_of"].words
-    yield Control("beam.width_of", "Width of", group, values["width_of"], "word", words=words, given="width_of" in beam)
+    yield Control("beam.width_of", "Width of", group, values["width_of"], "word", words=words)
 
 
 def _middle(axis: Any, default: float) -> float:
@@ -206,21 +206,22 @@ def _of_slab(document: Mapping[str, Any], design: parameters.Design) -> Iterator
         yield _periods("slab.periods", "Slab", parameters.count(table["periods"], "periods"))
         medium = parameters.SLAB["medium"]
         value = table.get("medium", medium.default)
-        yield Control("slab.medium", "Medium", "Slab", value, "word", words=medium.words, given="medium" in table)
+        yield Control("slab.medium", "Medium", "Slab", value, "word", words=medium.words)
         yield from _of_cell(table, "slab", "Slab")
     for key, what in (("background", "Around"), ("after", "Behind")):
         if isinstance(table.get(key), Mapping):
             yield from _numbers(table[key], parameters.FLUID, f"slab.{key}", what, "")
-    if table.get("background") is None and not design.layered and "stack" not in table:
+    stated = "density" in table or "sound_speed" in table
+    if table.get("background") is None and (stated or not (design.layered or "stack" in table)):
         around = {name: table.get(name, parameters.SLAB[name].default) for name in ("density", "sound_speed")}
-        yield from _numbers(around, parameters.SLAB, "slab", "Around", "", given=tuple(table))
+        yield from _numbers(around, parameters.SLAB, "slab", "Around", "")
     given = {key: table[key] for key in ("after_density", "after_speed") if key in table}
     yield from _numbers(given, parameters.SLAB, "slab", "Behind", "")
 
 
 def _periods(path: str, group: str, value: int) -> Control:
     high = max(1000.0, 2.0 * value) if value > 50 else 100.0
-    return Control(path, "Periods", group, value, "count", low=1, high=high, ratio=True, given=True, most=MOST_PERIODS)
+    return Control(path, "Periods", group, value, "count", low=1, high=high, ratio=True, most=MOST_PERIODS)
 
 
 def _of_cell(table: Mapping[str, Any], path: str, group: str) -> Iterator[Control]:
@@ -241,8 +242,7 @@ def _of_lmmd(table: Mapping[str, Any], path: str, group: str) -> Iterator[Contro
     rho_m = complex(values["rho_m"])
 
     def of(key: str, label: str, value: Any, low: float, high: float, **more: Any) -> Control:
-        given = key.split(".")[0] in table
-        return Control(f"{path}.{key}", label, group, value, low=low, high=high, given=given, **more)
+        return Control(f"{path}.{key}", label, group, value, low=low, high=high, **more)
 
     eta = values["eta"]
     yield of("eta", "Period over wavelength η", eta, min(0.004, eta), max(0.2, eta), ratio=True)
@@ -275,9 +275,8 @@ def _numbers(
     path: str,
     group: str,
     label: str,
-    given: tuple[str, ...] | None = None,
 ) -> Iterator[Control]:
-    """Every number that a table gives, from a quarter to four times itself; of complex ones both parts. The study states those of `given`."""
+    """Every number that a table gives, from a quarter to four times itself; of complex ones both parts."""
     for key, plain in table.items():
         parameter = described.get(key)
         if parameter is None or parameter.parse in (parameters.as_it_is, parameters.switch) or plain is None:
@@ -288,7 +287,7 @@ def _numbers(
         parts = {"": value} if not isinstance(value, complex) else {".re": value.real, ".im": value.imag}
         for part, number in parts.items():
             said = text + {"": "", ".re": ", real part", ".im": ", imaginary part"}[part]
-            yield replace(_about(f"{path}.{key}{part}", said, group, number, unit), given=given is None or key in given)
+            yield _about(f"{path}.{key}{part}", said, group, number, unit)
 
 
 def _about(path: str, label: str, group: str, value: float, unit: str) -> Control:
@@ -304,11 +303,9 @@ def _of_tolerance(document: Mapping[str, Any]) -> Iterator[Control]:
         group = "Errors of manufacture"
         values = parameters.read(document["tolerance"], questions.TOLERANCE, "tolerance")
         for key in ("thickness", "density"):
-            yield Control(f"tolerance.{key}", f"{key.capitalize()} error", group, values[key], high=0.1, given=True)
+            yield Control(f"tolerance.{key}", f"{key.capitalize()} error", group, values[key], high=0.1)
         for key in ("seed", "sample"):
-            yield Control(
-                f"tolerance.{key}", key.capitalize(), group, values[key], "count", high=50, most=1000, given=True
-            )
+            yield Control(f"tolerance.{key}", key.capitalize(), group, values[key], "count", high=50, most=1000)
 
 
 # --- what is shown ------------------------------------------------------------------------------------------
@@ -317,13 +314,11 @@ def _of_tolerance(document: Mapping[str, Any]) -> Iterator[Control]:
 def _of_view(document: Mapping[str, Any], design: parameters.Design, thickness: float) -> Iterator[Control]:
     own, group, wave = document["question"], "Shown", design.wavelength
     field = questions.arguments(document) if own["name"] == "field" else {}
-    x, z = field.get("x"), field.get("z")
-    half = float(max(abs(x))) if parameters.is_several(x) else float(-design.x[0])
-    behind = (float(max(z)) if parameters.is_several(z) else float(design.z(0.0, thickness)[-1])) - thickness
+    half = max(map(abs, _ends(field.get("x"), *design.x[[0, -1]].tolist())))
+    behind = max(_ends(field.get("z"), 0.0, float(design.z(0.0, thickness)[-1]))[1] - thickness, wave)
     low, high = _ends(questions.arguments(document)["frequency"], *design.band[[0, -1]].tolist())
     metres: dict[str, Any] = {"group": group, "unit": "m"}
     yield Control("view.x", "Half-height of the map", value=half, low=wave, high=30 * wave, ratio=True, **metres)
-    behind = max(behind, wave)
     yield Control(
         "view.behind", "Depth behind the slab", value=behind, low=0.1 * wave, high=30 * wave, ratio=True, **metres
     )

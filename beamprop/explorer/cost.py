@@ -23,7 +23,7 @@ def layers_of(description: Mapping[str, Any]) -> float:
             layers = len(part["layer"])
         else:
             layers = parameters.count(part.get("n_layers", parameters.LMMD["n_layers"].default), "n_layers")
-        default = 1 if parameters.of_layers(part) else parameters.SLAB["periods"].default
+        default = 1 if "stack" in slab or parameters.of_layers(part) else parameters.SLAB["periods"].default
         counts.append((layers, parameters.count(part.get("periods", default), "periods")))
     if "tolerance" not in description:
         return float(sum(layers for layers, _ in counts))

@@ -33,6 +33,5 @@ def colour_maps() -> dict[str, str]:
 
 def board_text(board: Board) -> bytes:
     """The controls and colour maps, as JSON."""
-    controls = [{key: value for key, value in asdict(control).items() if key != "given"} for control in board.controls]
-    start = {"title": board.title, "controls": controls, "colours": colour_maps()}
+    start = {"title": board.title, "controls": [asdict(c) for c in board.controls], "colours": colour_maps()}
     return json.dumps(plain(start), allow_nan=False).encode()

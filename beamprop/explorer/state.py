@@ -50,7 +50,7 @@ def description(board: Board, values: Mapping[str, Any], name: str) -> Descripti
     document = copy.deepcopy(dict(board.document))
     document["question"] = {"name": name}
     for control in board.controls:
-        if control.given or values[control.path] != control.value:
+        if values[control.path] != control.value:
             _put(document, control.path.split("."), values)
     document["beam"] = _beam(document["beam"], values)
     kept = {key: board.document["question"][key] for key in _KEPT[name] if key in board.document["question"]}
@@ -94,7 +94,7 @@ def _depths(document: Description, values: Mapping[str, Any]) -> str:
     """Planes from the launch plane to behind the slab, on the faces of cells: inside a cell the pressure ripples by its own mean."""
     from ..study.questions import slab_of
 
-    slab, _ = slab_of(document)
+    slab, _ = slab_of({key: table for key, table in document.items() if key != "tolerance"})
     first, last = values["beam.z0"], slab.thickness + values["view.behind"]
     wanted = (last - first) / (PLANES - 2)
     cell = slab.segments[0][0].thickness

@@ -13,10 +13,11 @@
   };
   const WIDTHS = [["fwhm_out", "Width behind the slab"], ["fwhm_in", "Width at the near face"], ["fwhm_air", "Width without the slab"]];
   const answers = { a: {}, b: {} }, running = new Set(), shown = {}, maps = {};
-  let state, sliders, curves, moving = 0;
+  let state, sliders, curves, remark = [], moving = 0;
 
   async function post(route, body) {
-    const response = await fetch(route, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+    const gone = () => { throw new Error("the server does not answer: start beamprop explore again"); };
+    const response = await fetch(route, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) }).catch(gone);
     if (response.ok) return response;
     const said = response.headers.get("Content-Type") === "application/json" ? (await response.json()).error : `${response.status} ${response.statusText}`;
     throw new Error(said);
@@ -136,7 +137,7 @@
 
   function drawNotes() {
     const said = slotsShown().flatMap((slot) => QUESTIONS.flatMap((q) => (answers[slot][q] || {}).warnings || []));
-    byId("notes").replaceChildren(...[...new Set(said)].map((text) => make("p", { textContent: text })));
+    byId("notes").replaceChildren(...[...new Set([...remark, ...said])].map((text) => make("p", { textContent: text })));
   }
 
   function draw(question) {
@@ -263,7 +264,8 @@
 
   function open() {
     const unknown = state.open(location.hash.slice(1));
-    if (unknown.length) byId("notes").append(make("p", { textContent: `The link has values that this study has not: ${unknown.join(", ")}` }));
+    remark = unknown.length ? [`The link has values that this study has not: ${unknown.join(", ")}`] : [];
+    drawNotes();
   }
 
   async function start() {

@@ -64,7 +64,7 @@ const Sliders = (() => {
         if (parts.check) parts.check.checked = value;
         if (parts.slider) {
           const position = String(State.position(control, value));
-          if (parts.slider.value !== position && State.at(control, Number(parts.slider.value)) !== value) parts.slider.value = position;
+          if (parts.slider.value !== position) parts.slider.value = position;
           const said = Plots.digits(value, 6);
           parts.slider.setAttribute("aria-valuetext", `${said} ${control.unit}`.trim());
           if (document.activeElement !== parts.typed || parts.typed.getAttribute("aria-invalid") !== "true") {

@@ -101,26 +101,30 @@ const State = (() => {
     return isFinite(value) && (control.kind !== "count" || Number.isInteger(value)) ? value : undefined;
   }
 
-  /** The value at a position of a slider: few digits, whole where it is a count. */
-  function at(control, position) {
-    const t = position / steps(control), { low, high } = control;
-    if (position === 0) return low;
-    const value = control.ratio ? low * (high / low) ** t : low + (high - low) * t;
-    if (control.kind === "count") return Math.round(value);
-    const step = 10 ** Math.floor(Math.log10(control.ratio ? value / 50 : (high - low) / 100));
-    return Number((Math.round(value / step) * step).toPrecision(12));
+  const lists = new Map(); // of controls
+
+  /** The values of a slider in their order: each differs from the next, with the fewest digits; whole where they are counts. */
+  function values(control) {
+    if (!lists.has(control)) {
+      const { low, high, ratio, kind } = control, list = [];
+      const exact = (i) => (ratio ? low * (high / low) ** (i / POSITIONS) : low + ((high - low) * i) / POSITIONS);
+      const whole = kind === "count" && !ratio && high - low < POSITIONS;
+      for (let i = 0; i <= (whole ? high - low : POSITIONS); i++) {
+        const v = whole ? low + i : exact(i), step = 10 ** Math.floor(Math.log10(Math.abs(exact(i + 1) - exact(i))));
+        list.push(kind === "count" ? Math.round(v) : i === 0 || i === POSITIONS ? v : Number((Math.round(v / step) * step).toPrecision(12)));
+      }
+      lists.set(control, [...new Set(list)]);
+    }
+    return lists.get(control);
   }
 
-  /** How many positions a slider has: of a count that does not run by ratios, as many as there are values. */
-  function steps(control) {
-    return control.kind === "count" && !control.ratio && control.high - control.low < POSITIONS ? control.high - control.low : POSITIONS;
-  }
+  const at = (control, position) => values(control)[position];
+  const steps = (control) => values(control).length - 1;
 
-  /** Where on the slider a value is. */
+  /** Where on the slider a value is: the nearest of its values. */
   function position(control, value) {
-    const { low, high } = control, clipped = Math.min(high, Math.max(low, value));
-    const t = control.ratio ? Math.log(clipped / low) / Math.log(high / low) : (clipped - low) / (high - low);
-    return Math.round(t * steps(control));
+    const near = (v) => Math.abs(v - value);
+    return values(control).reduce((best, v, i, all) => (near(v) < near(all[best]) ? i : best), 0);
   }
 
   return { State, valueOf, at, steps, position };
