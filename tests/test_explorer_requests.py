@@ -47,7 +47,7 @@ def foreign(server):
     )
     for name in names:
         yield 403, head(server, fields={"Host": name})
-        yield 403, post(server, "answer", GOOD, {"Host": name})
+        yield 403, post(server, "curve", GOOD, {"Host": name})
     for origin in (
         "http://evil.example",
         "null",
@@ -57,11 +57,11 @@ def foreign(server):
         "file://",
     ):
         yield 403, head(server, fields={"Origin": origin})
-        yield 403, post(server, "answer", GOOD, {"Origin": origin})
+        yield 403, post(server, "curve", GOOD, {"Origin": origin})
     for site in ("cross-site", "same-site"):
         yield 403, head(server, fields={"Sec-Fetch-Site": site})
     yield 403, head(server, fields={"Host": None})
-    yield 403, post(server, "answer", GOOD, {"Origin": None})
+    yield 403, post(server, "curve", GOOD, {"Origin": None})
 
 
 def unknown(server):
@@ -103,7 +103,7 @@ def wrong_methods(server):
     """Methods that a route has not, and kinds of body that are not taken."""
     for method in ("PUT", "DELETE", "HEAD", "OPTIONS", "TRACE", "PATCH", "CONNECT", "PROPFIND"):
         yield 405, head(server, method)
-    yield 405, head(server, "GET", "answer")
+    yield 405, head(server, "GET", "curve")
     yield 405, head(server, "POST", "page.js")
     for kind in (
         "text/plain",
@@ -111,7 +111,7 @@ def wrong_methods(server):
         "multipart/form-data",
         "application/json; charset=utf-7",
     ):
-        yield 415, post(server, "answer", GOOD, {"Content-Type": kind})
+        yield 415, post(server, "curve", GOOD, {"Content-Type": kind})
 
 
 def malformed(server):
@@ -131,14 +131,14 @@ def malformed(server):
         yield 400, first + b"\r\n" + host + field + b"\r\n\r\n"
     yield 431, first + b"\r\n" + host + b"X: " + b"a" * 2 * MOST_HEAD + b"\r\n\r\n"
     yield 431, b"GET /" + b"a" * 100_000
-    yield 413, post(server, "answer", b"", {"Content-Length": str(10**11)})
-    yield 413, post(server, "answer", b" " * (MOST_BODY + 1))
-    yield 413, post(server, "answer", b"x" * 3_000_000)
+    yield 413, post(server, "curve", b"", {"Content-Length": str(10**11)})
+    yield 413, post(server, "curve", b" " * (MOST_BODY + 1))
+    yield 413, post(server, "curve", b"x" * 3_000_000)
     for length in ("-1", "1e3", "0x10", "", "9" * 40, "1, 1"):
-        yield 400, post(server, "answer", b"", {"Content-Length": length})
+        yield 400, post(server, "curve", b"", {"Content-Length": length})
     yield (
         411,
-        head(server, "POST", "answer", {"Content-Type": "application/json", "Transfer-Encoding": "chunked"})
+        head(server, "POST", "curve", {"Content-Type": "application/json", "Transfer-Encoding": "chunked"})
         + b"0\r\n\r\n",
     )
 
@@ -166,7 +166,7 @@ def odd_json(server):
         b'{"a":' + b"9" * 60_000 + b"}",
         b'{"question": "bloch", "state": {"x": [[[[[[[[[1]]]]]]]]]}}',
     ):
-        yield 400, post(server, "answer", text)
+        yield 400, post(server, "curve", text)
 
 
 def wrong_values(server):
@@ -191,7 +191,7 @@ def wrong_values(server):
     paths = ("slab.eta", "slab.periods", "slab.n_layers", "question.frequency", "beam.fwhm", "view.x")
     bodies += [{"question": "field", "state": {path: value}} for path in paths for value in values]
     for body in bodies:
-        yield 422, post(server, "answer", body)
+        yield 422, post(server, "curve", body)
     yield 422, post(server, "file", {"question": "bloch", "state": {}, "kind": "../x", "quantity": "abs"})
     yield 422, post(server, "file", {"question": "field", "state": {}, "kind": "png", "quantity": "x"})
     yield 422, post(server, "texts", {"question": "x", "state": {}})
@@ -228,9 +228,9 @@ def test_slow_clients_cost_nothing(server):
     slow = [socket.create_connection(("127.0.0.1", server.port), 10) for _ in range(200)]
     try:
         for i, client in enumerate(slow):
-            client.sendall((b"", b"GET /", post(server, "answer", GOOD)[:-1])[i % 3])
+            client.sendall((b"", b"GET /", post(server, "curve", GOOD)[:-1])[i % 3])
         start = time.perf_counter()
-        assert status(sent(server, post(server, "answer", GOOD))) == 200
+        assert status(sent(server, post(server, "curve", GOOD))) == 200
         assert time.perf_counter() - start < 2
         threads = re.search(r"Threads:\s+(\d+)", Path(f"/proc/{server.process.pid}/status").read_text(encoding="ascii"))
         assert int(threads[1]) < 20
@@ -276,7 +276,7 @@ def test_it_ends_by_the_signals_of_a_terminal(number, code):
     """Ctrl-C, kill, and a terminal that is closed; also while a question is being answered."""
     with running() as server:
         with socket.create_connection(("127.0.0.1", server.port), 10) as client:
-            client.sendall(post(server, "answer", {"question": "field", "state": {}}))
+            client.sendall(post(server, "map", {"question": "field", "state": {}}))
             server.process.send_signal(number)
             assert server.process.wait(timeout=10) == code
         with pytest.raises(OSError, match="refused"):

@@ -95,13 +95,13 @@ def _bloch(description: Description, board: Board, moved: Any) -> Drawn:
 
 
 def _beam_width(description: Description, board: Board, moved: Any) -> Drawn:
-    """The curve, and the widths at the frequency of the map."""
-    ds = ask(description)
-    at = state.values_of(board, moved)["question.frequency"]
-    here = ask(description | {"question": description["question"] | {"frequency": at}})
-    return {"here": {"frequency": at, **{name: float(here[name]) for name in WIDTHS}}}, {
-        name: ds[name].values for name in ("frequency", "fwhm_in", "fwhm_out", "fwhm_air")
-    }
+    """The curve, and behind it the widths at the frequency of the map."""
+    curve = questions.arguments(description)["frequency"]
+    here = state.values_of(board, moved)["question.frequency"]
+    ds = ask(description | {"question": description["question"] | {"frequency": [*curve.tolist(), here]}})
+    widths = {name: float(ds[name][-1]) for name in WIDTHS}
+    arrays = {name: ds[name].values[:-1] for name in ("fwhm_in", "fwhm_out", "fwhm_air")}
+    return {"here": {"frequency": here, **widths}}, {"frequency": curve, **arrays}
 
 
 _DRAWN: dict[str, Callable[[Description, Board, Any], Drawn]] = {

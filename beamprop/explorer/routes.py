@@ -79,7 +79,7 @@ def admit(site: Site, request: Request) -> str:
     return route
 
 
-def respond(site: Site, route: str, body: bytes) -> Response:
+def respond(board: Board, route: str, body: bytes) -> Response:
     """The answer on a route; a ValueError of the package is said in the page."""
     if route in FILES:
         name, kind = FILES[route]
@@ -87,9 +87,9 @@ def respond(site: Site, route: str, body: bytes) -> Response:
     if route == "board":
         from .start import board_text
 
-        return Response(body=board_text(site.board), kind="application/json")
+        return Response(body=board_text(board), kind="application/json")
     try:
-        return POSTED[route](site.board, read_json(body))
+        return POSTED[route](board, read_json(body))
     except ValueError as error:
         return Response(422, json.dumps({"error": str(error)}).encode(), "application/json")
     except MemoryError:
@@ -157,4 +157,10 @@ def _only(sent: Mapping[str, Any], *names: str) -> None:
         raise ValueError(f"request: expected {', '.join(names)}, got {', '.join(map(str, sent))[:80] or 'nothing'}")
 
 
-POSTED: dict[str, Callable[[Board, Mapping[str, Any]], Response]] = {"answer": _answer, "texts": _texts, "file": _file}
+#: Maps and curves are asked for apart, so that they are answered beside each other.
+POSTED: dict[str, Callable[[Board, Mapping[str, Any]], Response]] = {
+    "map": _answer,
+    "curve": _answer,
+    "texts": _texts,
+    "file": _file,
+}

@@ -1,18 +1,24 @@
 """The server: it listens at 127.0.0.1 alone, and ends with the terminal that it was started from.
 
-Requests are read by one thread, which waits for no client, and answered by another, one at a time: a slow client takes a place of `MOST_READ` and
-nothing else. Where all are taken, the request that is longest on its way gives up its own.
+Requests are read by one thread, which waits for no client: a slow one takes a place of `MOST_READ` and nothing else, and where all are taken, the
+request that is longest on its way gives up its own. Maps are answered by a second thread, curves by a process of their own, so that two cores
+follow a slider; each takes one request at a time.
 """
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import functools
+import multiprocessing
 import os
 import queue
 import secrets
+import signal
 import sys
 import threading
 from collections.abc import Callable
+from multiprocessing.connection import Connection
 from typing import Any
 
 from .controls import Board
@@ -25,37 +31,80 @@ MOST_READ, MOST_WAITING = 64, 16
 LOOK = 1.0
 
 
+#: From a route and the body of a request to its answer.
+Answer = Callable[[str, bytes], Response]
+
+
 class Solver:
     """A thread that answers one request at a time, and ends with the process whatever it is at."""
 
-    def __init__(self) -> None:
-        self.work: queue.SimpleQueue[tuple[asyncio.Future[Response], Callable[[], Response]]] = queue.SimpleQueue()
+    def __init__(self, answer: Answer) -> None:
+        self.answer = answer
+        self.work: queue.SimpleQueue[tuple[asyncio.Future[Response], str, bytes]] = queue.SimpleQueue()
         self.waiting = 0
         threading.Thread(target=self._run, daemon=True, name="solver").start()
 
-    async def answer(self, action: Callable[[], Response]) -> Response:
-        """What an action returns; refused where too many wait."""
+    async def ask(self, route: str, body: bytes) -> Response:
+        """The answer to a request; refused where too many wait."""
         if self.waiting >= MOST_WAITING:
             return refusal(503)
         future: asyncio.Future[Response] = asyncio.get_running_loop().create_future()
         self.waiting += 1
         try:
-            self.work.put((future, action))
+            self.work.put((future, route, body))
             return await future
         finally:
             self.waiting -= 1
 
     def _run(self) -> None:
         while True:
-            future, action = self.work.get()
-            try:
-                response = action()
-            except Refused as error:
-                response = refusal(error.status)
-            except Exception as error:
-                print_fault(error)
-                response = refusal(500)
+            future, route, body = self.work.get()
+            response = self.answer(route, body)
             future.get_loop().call_soon_threadsafe(_settle, future, response)
+
+
+def answered(board: Board, route: str, body: bytes) -> Response:
+    """The answer on a route, whatever goes wrong."""
+    try:
+        return respond(board, route, body)
+    except Refused as error:
+        return refusal(error.status)
+    except Exception as error:
+        print_fault(error)
+        return refusal(500)
+
+
+class Child:
+    """A process that answers as `answered` does; another takes its place if it is lost."""
+
+    def __init__(self, board: Board) -> None:
+        self.board = board
+        self.connection = self._start()
+
+    def _start(self) -> Connection:
+        context = multiprocessing.get_context("spawn")
+        ours, theirs = context.Pipe()
+        context.Process(target=_answer_all, args=(theirs, self.board), daemon=True).start()
+        theirs.close()
+        return ours
+
+    def answer(self, route: str, body: bytes) -> Response:
+        """The answer to a request."""
+        try:
+            self.connection.send((route, body))
+            response: Response = self.connection.recv()
+        except (EOFError, OSError):
+            self.connection = self._start()
+            return refusal(503)
+        return response
+
+
+def _answer_all(connection: Connection, board: Board) -> None:
+    """Answer what comes until the other end is closed, which the end of its process does. Ctrl-C in the terminal is for that process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            connection.send(answered(board, *connection.recv()))
 
 
 def _settle(future: asyncio.Future[Response], response: Response) -> None:
@@ -74,7 +123,9 @@ class Server:
     """Connections to the page of a study."""
 
     def __init__(self, site: Site) -> None:
-        self.site, self.solver = site, Solver()
+        self.site = site
+        self.maps = Solver(functools.partial(answered, site.board))
+        self.curves = Solver(Child(site.board).answer)
         self.reading: dict[asyncio.Task[Any], None] = {}
 
     async def connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -99,7 +150,7 @@ class Server:
             return refusal(error.status)
         finally:
             self.reading.pop(task, None)
-        return await self.solver.answer(lambda: respond(self.site, route, request.body))
+        return await (self.curves if route == "curve" else self.maps).ask(route, request.body)
 
 
 async def _serve(board: Board, port: int, started: Callable[[str], None]) -> None:
@@ -142,5 +193,6 @@ def serve(board: Board, port: int, started: Callable[[str], None]) -> None:
     """
     import matplotlib
 
+    sys.setswitchinterval(5e-4)  # requests are read and answers written while a map is computed
     matplotlib.use("agg")  # pictures are drawn beside the main thread, where windows cannot be
     asyncio.run(_serve(board, port, started))

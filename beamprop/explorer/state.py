@@ -96,7 +96,7 @@ def _depths(document: Description, values: Mapping[str, Any]) -> str:
 
     slab, _ = slab_of({key: table for key, table in document.items() if key != "tolerance"})
     first, last = values["beam.z0"], slab.thickness + values["view.behind"]
-    wanted = (last - first) / (PLANES - 2)
+    wanted = (last - first) / (PLANES - 1)
     cell = slab.segments[0][0].thickness
     if not cell > 0:
         step = wanted

@@ -3,7 +3,7 @@
 const FieldMap = (() => {
   const FLOOR = -40; // of the level [dB]
   const QUANTITIES = {
-    abs: { title: "|p| [Pa]", colours: "sequential", ends: (top) => [0, top], of: (re, im) => Math.hypot(re, im) },
+    abs: { title: "|p| [Pa]", colours: "sequential", ends: (top) => [0, top], of: (re, im) => Math.sqrt(re * re + im * im) },
     real: { title: "Re p [Pa]", colours: "signed", ends: (top) => [-top, top], of: (re) => re },
     phase: { title: "phase [°]", colours: "cyclic", ends: () => [-180, 180], of: (re, im) => (Math.atan2(im, re) * 180) / Math.PI },
     dB: { title: "level [dB]", colours: "sequential", ends: () => [FLOOR, 0], of: (re, im, top) => Math.max(FLOOR, 10 * Math.log10((re * re + im * im) / (top * top) + 1e-12)) },

@@ -3,7 +3,8 @@
 (() => {
   const { make } = Sliders;
   const byId = (id) => document.getElementById(id);
-  const QUESTIONS = ["field", "scattering", "bloch", "beam_width"];
+  /** In the order in which they are asked: curves are quick, and wait for no map. */
+  const QUESTIONS = ["scattering", "bloch", "beam_width", "field"];
   /** Values that a question does not depend on. */
   const IDLE = {
     field: /^view\.(kx|contour|from|to)$/,
@@ -45,7 +46,7 @@
       if (running.has(job) || (have && have.of === wanted)) continue;
       running.add(job);
       const moved = state.slots[slot];
-      post("answer", { question, state: moved })
+      post(question === "field" ? "map" : "curve", { question, state: moved })
         .then(async (response) => ({ of: wanted, moved, ...unpack(await response.arrayBuffer()) }))
         .catch((error) => ({ of: wanted, refused: error.message }))
         .then((answer) => {
