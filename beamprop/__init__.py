@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from .media.lmmd import lmmd_cell
     from .media.materials import material, materials
     from .media.membranes import Membrane
+    from .media.planes import faces
     from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
     from .media.structures import Cell, Layer, Slab
@@ -60,6 +61,7 @@ _HOMES = {
         "narrow_slits",
         "narrow_tubes",
     ),
+    "media.planes": ("faces",),
     "media.properties": ("Tabulated",),
     "media.membranes": ("Membrane",),
     "media.structures": ("Cell", "Layer", "Slab"),
@@ -109,6 +111,7 @@ __all__ = [
     "compare",
     "delany_bazley_miki",
     "export",
+    "faces",
     "fem",
     "field",
     "fwhm",

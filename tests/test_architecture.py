@@ -52,10 +52,10 @@ ONLY = {
     "io": {"memory", "validate", "media", "sources"},
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
     "comparison": {"validate", "sources", "profiles", "io", "api"},
-    "plot": {"validate"},
+    "plot": {"validate", "media", "profiles", "io"},
     "parameters": {"memory", "validate", "media", "sources"},
-    "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
-    "explorer": {"memory", "validate", "sources", "io", "plot", "parameters", "study"},
+    "study": {"memory", "validate", "progress", "media", "io", "api", "plot", "parameters"},
+    "explorer": {"memory", "validate", "media", "sources", "io", "plot", "parameters", "study"},
 }
 
 

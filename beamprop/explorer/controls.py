@@ -6,12 +6,15 @@ import copy
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import parameters
 from ..parameters import Parameter
 from ..study import questions
 from ..study.files import StudyFile
+
+if TYPE_CHECKING:
+    from ..media.structures import Slab
 
 Description = dict[str, Any]
 #: Beyond its slider a value may be typed, up to so many times the slider's end, down to that part of it.
@@ -92,7 +95,7 @@ def board(study: StudyFile | None = None) -> Board:
         *_of_beam(document, design),
         *_of_slab(document, design),
         *_of_tolerance(document),
-        *_of_view(document, design, slab.thickness),
+        *_of_view(document, design, slab),
     ]
     controls = (_bounded(_over(control, ranges.get(control.path))) for control in made)
     title = "the slab of the paper" if study is None else study.path.name
@@ -311,11 +314,11 @@ def _of_tolerance(document: Mapping[str, Any]) -> Iterator[Control]:
 # --- what is shown ------------------------------------------------------------------------------------------
 
 
-def _of_view(document: Mapping[str, Any], design: parameters.Design, thickness: float) -> Iterator[Control]:
+def _of_view(document: Mapping[str, Any], design: parameters.Design, slab: Slab) -> Iterator[Control]:
     own, group, wave = document["question"], "Shown", design.wavelength
     field = questions.arguments(document) if own["name"] == "field" else {}
     half = max(map(abs, _ends(field.get("x"), *design.x[[0, -1]].tolist())))
-    behind = max(_ends(field.get("z"), 0.0, float(design.z(0.0, thickness)[-1]))[1] - thickness, wave)
+    behind = max(_ends(field.get("z"), 0.0, float(design.z(0.0, slab)[-1]))[1] - slab.thickness, wave)
     low, high = _ends(questions.arguments(document)["frequency"], *design.band[[0, -1]].tolist())
     metres: dict[str, Any] = {"group": group, "unit": "m"}
     yield Control("view.x", "Half-height of the map", value=half, low=wave, high=30 * wave, ratio=True, **metres)

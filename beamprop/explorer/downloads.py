@@ -8,6 +8,8 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import panels, state
 from .controls import Board
 
@@ -42,7 +44,8 @@ def _picture(ds: Any, name: str, kind: str, quantity: Any) -> bytes:
     from .. import plot
 
     draw: dict[str, Any] = {"scattering": plot.scattering, "bloch": plot.bloch, "beam_width": plot.width}
-    figure = (plot.field(ds, quantity) if name == "field" else draw[name](ds)).figure
+    drawn_in = plot.field(ds, quantity) if name == "field" else draw[name](ds)
+    figure = np.atleast_1d(drawn_in).flat[0].figure
     drawn = io.BytesIO()
     try:
         figure.savefig(drawn, format=kind, dpi=200)

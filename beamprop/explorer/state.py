@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .. import parameters, validate
+from ..media.planes import RESOLVED
 from .controls import Board, Description
 
 #: Values that the map, a curve of plane waves and the width curve are drawn from.
@@ -98,17 +99,13 @@ def _depths(document: Description, values: Mapping[str, Any]) -> str:
     first, last = values["beam.z0"], slab.thickness + values["view.behind"]
     wanted = (last - first) / (PLANES - 1)
     cell = slab.segments[0][0].thickness
-    if not cell > 0:
-        step = wanted
+    if RESOLVED * wanted <= cell:
+        step = cell / math.floor(cell / wanted)
     else:
-        step = cell * math.ceil(wanted / cell) if wanted > cell else cell / max(1, math.floor(cell / wanted))
-    start = (
-        math.floor(first / step) + 1 if first < 0 else 0
-    )  # behind the launch plane, on which the spectrum of an edge has no end
-    stop = math.ceil(last / step)
-    if values["beam.source"] != "gaussian" and start == 0:
-        start = 1
-    stop = min(stop, start + PLANES - 1)
+        step = cell * math.ceil(wanted / cell) if cell > 0 else wanted
+    # on the launch plane itself the spectrum of an edge has no end: the first plane is behind it
+    start = 0 if first == 0 and values["beam.source"] == "gaussian" else math.floor(first / step) + 1
+    stop = min(math.ceil(last / step), start + PLANES - 1)
     return f"{start * step!r}:{stop * step!r}:{stop - start + 1}"
 
 
