@@ -41,6 +41,8 @@ def _dataset(ds: Any) -> bytes:
 def _picture(ds: Any, name: str, kind: str, quantity: Any) -> bytes:
     import matplotlib.pyplot as plt
 
+    plt.switch_backend("agg")  # no window is opened here
+
     from .. import plot
 
     draw: dict[str, Any] = {"scattering": plot.scattering, "bloch": plot.bloch, "beam_width": plot.width}

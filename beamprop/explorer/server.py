@@ -1,15 +1,14 @@
 """The server: it listens at 127.0.0.1 alone, and ends with the terminal that it was started from.
 
 Requests are read by one thread, which waits for no client: a slow one takes a place of `MOST_READ` and nothing else, and where all are taken, the
-request that is longest on its way gives up its own. Maps are answered by a second thread, curves by a process of their own, so that two cores
-follow a slider; each takes one request at a time.
+request that is longest on its way gives up its own. Questions are answered by two processes, for curves and for all else, so that two cores follow a
+slider and requests are read meanwhile; each takes one at a time.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
-import functools
 import multiprocessing
 import os
 import queue
@@ -23,7 +22,7 @@ from typing import Any
 
 from .controls import Board
 from .http import MOST_HEAD, Refused, Response, read, refusal, write
-from .routes import Site, admit, respond
+from .routes import POSTED, Site, admit, respond
 
 #: Connections at a time whose request is still read, and requests that wait for an answer.
 MOST_READ, MOST_WAITING = 64, 16
@@ -31,15 +30,11 @@ MOST_READ, MOST_WAITING = 64, 16
 LOOK = 1.0
 
 
-#: From a route and the body of a request to its answer.
-Answer = Callable[[str, bytes], Response]
-
-
 class Solver:
-    """A thread that answers one request at a time, and ends with the process whatever it is at."""
+    """A thread that passes one request at a time on to a process, and ends with its own whatever it waits for."""
 
-    def __init__(self, answer: Answer) -> None:
-        self.answer = answer
+    def __init__(self, child: Child) -> None:
+        self.child = child
         self.work: queue.SimpleQueue[tuple[asyncio.Future[Response], str, bytes]] = queue.SimpleQueue()
         self.waiting = 0
         threading.Thread(target=self._run, daemon=True, name="solver").start()
@@ -59,7 +54,7 @@ class Solver:
     def _run(self) -> None:
         while True:
             future, route, body = self.work.get()
-            response = self.answer(route, body)
+            response = self.child.answer(route, body)
             future.get_loop().call_soon_threadsafe(_settle, future, response)
 
 
@@ -124,8 +119,8 @@ class Server:
 
     def __init__(self, site: Site) -> None:
         self.site = site
-        self.maps = Solver(functools.partial(answered, site.board))
-        self.curves = Solver(Child(site.board).answer)
+        curves, rest = Solver(Child(site.board)), Solver(Child(site.board))
+        self.solvers = {route: curves if route == "curve" else rest for route in POSTED}
         self.reading: dict[asyncio.Task[Any], None] = {}
 
     async def connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -150,11 +145,13 @@ class Server:
             return refusal(error.status)
         finally:
             self.reading.pop(task, None)
-        return await (self.curves if route == "curve" else self.maps).ask(route, request.body)
+        if route in self.solvers:
+            return await self.solvers[route].ask(route, request.body)
+        return answered(self.site.board, route, request.body)
 
 
 async def _serve(board: Board, port: int, started: Callable[[str], None]) -> None:
-    server: list[Server] = []
+    parent, server = os.getppid(), list[Server]()
 
     async def connected(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await server[0].connected(reader, writer)
@@ -165,12 +162,11 @@ async def _serve(board: Board, port: int, started: Callable[[str], None]) -> Non
     server.append(Server(site))
     started(site.url)
     async with listening:
-        await _until_the_parent_ends()
+        await _until_it_ends(parent)
 
 
-async def _until_the_parent_ends() -> None:
+async def _until_it_ends(parent: int) -> None:
     """Until the process that started this one is gone, and another has taken it over."""
-    parent = os.getppid()
     while os.getppid() == parent:
         await asyncio.sleep(LOOK)
 
@@ -191,8 +187,4 @@ def serve(board: Board, port: int, started: Callable[[str], None]) -> None:
     OSError
         The port is taken.
     """
-    import matplotlib
-
-    sys.setswitchinterval(5e-4)  # requests are read and answers written while a map is computed
-    matplotlib.use("agg")  # pictures are drawn beside the main thread, where windows cannot be
     asyncio.run(_serve(board, port, started))

@@ -44,6 +44,8 @@
     for (const question of QUESTIONS) for (const slot of slots) {
       const job = `${question} ${slot}`, wanted = needed(question, slot), have = answers[slot][question];
       if (running.has(job) || (have && have.of === wanted)) continue;
+      // widths take longest of the curves: the others go first
+      if (question === "beam_width" && (running.has(`scattering ${slot}`) || running.has(`bloch ${slot}`))) continue;
       running.add(job);
       const moved = state.slots[slot];
       post(question === "field" ? "map" : "curve", { question, state: moved })
