@@ -31,6 +31,7 @@ ORDER = [
     "plot",
     "parameters",
     "study",
+    "explorer",
     "cli",
     "__main__",
 ]
@@ -54,6 +55,7 @@ ONLY = {
     "plot": {"validate", "media", "profiles", "io"},
     "parameters": {"memory", "validate", "media", "sources"},
     "study": {"memory", "validate", "progress", "media", "io", "api", "plot", "parameters"},
+    "explorer": {"memory", "validate", "media", "sources", "io", "plot", "parameters", "study"},
 }
 
 

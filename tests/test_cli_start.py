@@ -72,5 +72,5 @@ def test_names_are_those_of_python_and_old_ones_stay(old, new):
     """A command has the name of its question; what was typed before, and hyphens, are taken too."""
     assert main.get_command(click.Context(main), old) is main.commands[new]
     assert set(main.commands) == {
-        "beam_measures", "beam_width", "bloch", "check", "compare", "convert", "field", "guided_modes", "help", "init", "run", "scattering",
+        "beam_measures", "beam_width", "bloch", "check", "compare", "convert", "explore", "field", "guided_modes", "help", "init", "run", "scattering",
     }  # fmt: skip

@@ -1,7 +1,7 @@
 """The command `beamprop`. Data go to stdout, progress and warnings to stderr; wrong use exits with 2.
 
 Everything heavy is imported inside the commands, so that ``beamprop --help`` is instant. options.py: what may be typed.
-questions.py: the questions. study.py: study files. files.py: comparison and conversion. answer.py: stdout and files. failures.py: what goes wrong.
+questions.py: the questions. study.py: study files. explore.py: the page. files.py: comparison and conversion. answer.py: stdout and files. failures.py: what goes wrong.
 commands.py: help and signals.
 """
 
@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from .._version import __version__
-from . import files, questions, study
+from . import explore, files, questions, study
 from .commands import GUIDE, command, ending_by_signal, show_example
 
 
@@ -58,5 +58,5 @@ def show_help(ctx: click.Context, name: str | None) -> None:
     click.echo(wanted.get_help(above if name is None else click.Context(wanted, info_name=wanted.name, parent=above)))
 
 
-for each in (*questions.COMMANDS, *files.COMMANDS, *study.COMMANDS, show_help):
+for each in (*questions.COMMANDS, *files.COMMANDS, *study.COMMANDS, *explore.COMMANDS, show_help):
     main.add_command(each)

@@ -36,7 +36,7 @@ def _shard(value: Any, name: str) -> tuple[int, int]:
     return int(part), int(parts)
 
 
-def _read(path: Path) -> StudyFile:
+def read_study(path: Path) -> StudyFile:
     """The study of a file, or all that is wrong with it as wrong use."""
     from ..study import files
 
@@ -90,7 +90,7 @@ def run(**o: Any) -> None:
 
     At all its points; the same command again goes on with what a kill left in its store.
     """
-    study = _read(o["file"])
+    study = read_study(o["file"])
     unused = [name for name in ("shard", "repair", "scheduler", "workers") if o[name]]
     if unused and not study.axes:
         raise click.UsageError(f"--{unused[0]}: expected a study with a sweep, got one question")
@@ -140,7 +140,7 @@ def check(**o: Any) -> None:
 
     All mistakes at a time; then points, time, memory and the size of the file, from a few points that are answered.
     """
-    study = _read(o["file"])
+    study = read_study(o["file"])
 
     def predict() -> Any:
         from ..study.predict import predict

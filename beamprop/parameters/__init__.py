@@ -22,6 +22,7 @@ from .media import LMMD as LMMD
 from .media import PART as PART
 from .media import SLAB as SLAB
 from .media import cell as cell
+from .media import described as described
 from .media import fluid_of as fluid_of
 from .media import layer as layer
 from .media import layer_of as layer_of

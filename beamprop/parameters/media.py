@@ -214,7 +214,7 @@ def layer(given: Any, name: str = "layer") -> Layer | Membrane:
     >>> layer({"areal_density": 0.3})
     Membrane(areal_density=(0.3+0j), active=False)
     """
-    table = _described(given, name) if isinstance(given, str) else given
+    table = described(given, name) if isinstance(given, str) else given
     with _of(name):
         made = layer_of(table)
     if made is None:
@@ -297,7 +297,7 @@ def _material(value: Any, key: str) -> Fluid:
         return material(value)
 
 
-def _described(text: str, name: str) -> dict[str, Any]:
+def described(text: str, name: str) -> dict[str, Any]:
     """The table that words stand for: key=value, a length, and what is left is a material's name."""
     table: dict[str, Any] = {}
     names = []

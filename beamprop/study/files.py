@@ -265,8 +265,21 @@ def write(path: Path, tables: Mapping[str, Mapping[str, Any]]) -> None:
     for table, keys in _PATHS.items():
         for key in set(keys) & moved.get(table, {}).keys():
             moved[table][key] = os.path.relpath(moved[table][key], path.parent)
-    lines = "\n".join(f"[{name}]\n" + "".join(f"{k} = {_toml(v)}\n" for k, v in t.items()) for name, t in moved.items())
-    write_whole(path, lambda draft: _write(draft, lines))
+    write_whole(path, lambda draft: _write(draft, text_of(moved)))
+
+
+def text_of(tables: Mapping[str, Mapping[str, Any]]) -> str:
+    """Tables of plain values as the text of a study file.
+
+    Examples
+    --------
+    >>> from beamprop.study.files import text_of
+    >>> print(text_of({"slab": {"layer": [{"material": "water", "thickness": "2mm"}]}}))
+    [slab]
+    layer = [{material = "water", thickness = "2mm"}]
+    <BLANKLINE>
+    """
+    return "\n".join(f"[{name}]\n" + "".join(f"{k} = {_toml(v)}\n" for k, v in t.items()) for name, t in tables.items())
 
 
 def _write(draft: Path, text: str) -> None:
@@ -279,4 +292,6 @@ def _toml(value: Any) -> str:
 
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(v)}" for key, v in value.items()) + "}"
     return json.dumps(value if isinstance(value, bool | int | float) else os.fspath(value), ensure_ascii=False)
