@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from .media.membranes import Membrane
     from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
+    from .media.solids import Solid
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
     from .sources.gaussian import GaussianBeam
@@ -62,6 +63,7 @@ _HOMES = {
     ),
     "media.properties": ("Tabulated",),
     "media.membranes": ("Membrane",),
+    "media.solids": ("Solid",),
     "media.structures": ("Cell", "Layer", "Slab"),
     "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
@@ -101,6 +103,7 @@ __all__ = [
     "Profile",
     "Slab",
     "Slits",
+    "Solid",
     "Tabulated",
     "__version__",
     "beam_measures",

@@ -12,6 +12,7 @@ import xarray as xr
 from .. import memory, response, validate
 from ..conventions import outgoing_kz
 from ..io import datasets
+from ..media.solid_runs import has_solids
 from ..media.structures import Slab
 from ..media.values import materials, slab_values
 from . import checks, hints
@@ -122,7 +123,7 @@ def _solved(
     values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
     if not estimate:
         return response.solve(values, before, after, omega, kx), ()
-    rows = [materials(cell, frequency) for cell, _ in slab.segments]
+    rows = [] if has_solids(slab) else [materials(cell, frequency) for cell, _ in slab.segments]
     res = response.solve_checked(values, rows, before, after, omega, kx)
     return res, (res.r_error, res.t_error, np.maximum(res.r_error, res.t_error))
 

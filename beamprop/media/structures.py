@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,11 +12,12 @@ from .. import validate
 from ..validate import as_count, as_number
 from .fluids import AIR, Fluid
 from .membranes import Membrane
+from .solids import Solid
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A homogeneous layer: a `Fluid` and its thickness [m].
+    """A homogeneous layer: a `Fluid` or a `Solid`, and its thickness [m].
 
     Examples
     --------
@@ -23,12 +25,18 @@ class Layer:
     Layer(fluid=Fluid(density=1.25, bulk_modulus=147061), thickness=0.01)
     """
 
-    fluid: Fluid
+    fluid: Fluid | Solid
     thickness: float
 
     def __post_init__(self) -> None:
-        validate.instance(self.fluid, Fluid, "fluid")
+        if not isinstance(self.fluid, Fluid | Solid):
+            raise validate.refuse("fluid", "a Fluid or a Solid", self.fluid)
         object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True, tiny=True))
+
+
+def is_solid(layer: Any) -> bool:
+    """Whether a layer is a solid one."""
+    return isinstance(layer, Layer) and isinstance(layer.fluid, Solid)
 
 
 def _checked_layer(layer: Any) -> Layer | Membrane:
@@ -78,6 +86,14 @@ def _half_spaces(before: Fluid, after: Fluid, background: Fluid | None) -> tuple
         return before, after
     validate.instance(background, Fluid, "background")
     return (background if before is UNSTATED else before), (background if after is UNSTATED else after)
+
+
+def _refuse_membrane_between_solids(segments: list[tuple[Cell, int]]) -> None:
+    layers = [layer for cell, periods in segments for layer in cell.layers * min(periods, 2)]
+    kinds = ("membrane" if isinstance(layer, Membrane) else "solid" if is_solid(layer) else "fluid" for layer in layers)
+    row = [kind for kind, _ in itertools.groupby(kinds)]
+    if any(row[i : i + 3] == ["solid", "membrane", "solid"] for i in range(len(row))):
+        raise ValueError("layers: expected a membrane beside a fluid, got one between two solids, which has no meaning")
 
 
 @dataclass(frozen=True, init=False)
@@ -131,6 +147,8 @@ class Slab:
 
     def _fill(self, segments: tuple[tuple[Cell, int], ...], before: Fluid, after: Fluid) -> None:
         for name, fluid in (("before", before), ("after", after)):
+            if isinstance(fluid, Solid):
+                raise ValueError(f"{name}: expected a Fluid (half-spaces of solid are not taken), got {fluid!r}")
             validate.instance(fluid, Fluid, name)
             if not callable(fluid.density) and fluid.density == 0:
                 raise ValueError(f"{name}: expected a half-space of a density other than zero, got {fluid!r}")
@@ -140,6 +158,7 @@ class Slab:
                 merged[-1] = (cell, merged[-1][1] + periods)
             else:
                 merged.append((cell, periods))
+        _refuse_membrane_between_solids(merged)
         object.__setattr__(self, "segments", tuple(merged))
         object.__setattr__(self, "before", before)
         object.__setattr__(self, "after", after)

@@ -52,7 +52,7 @@ def solve_checked(
     limit = DOUBTFUL * max(1.0, sum(s.periods * len(s.layers.thickness) for s in segments) / 32)
     doubtful = larger > limit
     out = Checked(one.r, one.t, np.where(doubtful, larger, r_error), larger)
-    if not any(np.any(s.layers.vanishing) for s in segments):
+    if not any(np.any(s.layers.vanishing) or s.layers.solids for s in segments):
         for i in np.flatnonzero(np.any(doubtful, axis=-1)):
             part = [s._replace(layers=at_frequencies(s.layers, slice(i, i + 1))) for s in segments]
             rows = [m._replace(fluid=FluidValues(*(v[:, i : i + 1] for v in m.fluid))) for m in materials]

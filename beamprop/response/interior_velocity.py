@@ -12,11 +12,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays.matmul import BLOCK
+from ..media.values import LayerValues
 from .cell import matrix_back
 from .interior import ROWS, by_layer, station_at, with_tails
 from .layer import State, layer_back, one_layer
 from .periods import power_back
 from .recursion import Places, Station, places_of, segment_of
+from .solid_run import inside_run
 
 
 def fill_velocity(
@@ -44,10 +46,28 @@ def fill_velocity(
                 w, k, at_i = omega[i : i + 1], kx[i : i + 1], station_at(station, i)
                 layers = at_i.values.layers
                 for j, here, behind in _states_behind(at_i, w, k, places):
-                    state = layer_back(behind, *one_layer(layers, j, w * w, k * k, places.share[here][:, None]))
-                    v = -1j * state.q if along == "z" else state.p * (layers.mobility[j, 0] / layers.thickness[j])
-                    out[i, block[here]] = v * np.exp(state.log - near_log[i]) * (per_incident[i] / w[0])
+                    v, log = _velocity(layers, j, (w, k), behind, places.share[here], along)
+                    out[i, block[here]] = v * np.exp(log - near_log[i]) * (per_incident[i] / w[0])
     return out
+
+
+def _velocity(
+    layers: LayerValues, j: int, w_and_kx: tuple[np.ndarray, np.ndarray], behind: State, share: np.ndarray, along: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """w v_z, or w v_x over kx, and their logarithm at shares (Z,) of a layer."""
+    w, kx = w_and_kx
+    run = dict(layers.solids).get(j)
+    if run is None:
+        state = layer_back(behind, *one_layer(layers, j, w * w, kx * kx, share[:, None]))
+        return -1j * state.q if along == "z" else state.p * (layers.mobility[j, 0] / layers.thickness[j]), state.log
+    if along == "x":  # X = w v_x is odd in kx: its slope at kx = 0
+        kx = np.where(kx == 0, SLIGHT * np.abs(w), kx)
+    inside = inside_run(run, w, kx, behind, share * layers.thickness[j])
+    return -1j * inside.q if along == "z" else inside.X / kx, inside.log
+
+
+#: kx [s/m, times w] that stands for 0: its square is below the rounding of any layer's kx^2.
+SLIGHT = 1e-15
 
 
 def _states_behind(

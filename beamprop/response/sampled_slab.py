@@ -18,7 +18,7 @@ from ..media.values import SegmentValues, half_space_values, slab_values
 from . import walls
 from .cell import cell_matrix
 from .conditioning import SHIFT
-from .layer import at_frequencies, half_space_with_loss, perturbed, with_loss
+from .layer import at_frequencies, half_space_with_loss, perturbed, properties, with_loss, with_solids
 from .periods import bloch_phase
 from .slab import Response, dispersion, solve
 
@@ -181,16 +181,17 @@ class FluidSlab(NamedTuple):
     @property
     def has_loss(self) -> np.ndarray:
         """At which frequencies some property has an imaginary part, (F,)."""
-        values = [v for seg in self.segments for v in seg.layers[:3]]
+        values = [v for seg in self.segments for v in properties(seg.layers)]
         return np.any(
             [np.any(v.imag, axis=0) for v in (*values, *(v[None] for v in (*self.before, *self.after)))], axis=0
         )
 
     @property
     def may_guide_backward(self) -> bool:
-        """Whether some density or modulus is negative."""
+        """Whether some density or modulus is negative, or some layer a solid, whose plate waves may run backward."""
+        solid = any(segment.layers.solids for segment in self.segments)
         layers = (v for seg in self.segments for v in (seg.layers.mass, seg.layers.mobility, seg.layers.compliance))
-        return any(bool(np.any(v.real < 0)) for v in (*layers, *self.before, *self.after))
+        return solid or any(bool(np.any(v.real < 0)) for v in (*layers, *self.before, *self.after))
 
     @property
     def has_wall(self) -> bool:
@@ -214,7 +215,8 @@ class FluidSlab(NamedTuple):
         """Half the trace of one period's matrix."""
         layers = self.segments[0].layers
         mass, compliance, mobility = (v.real for v in layers[:3])
-        layers = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+        real = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+        layers = with_solids(real, layers, lambda v, kind: v.real + 0j)
         m = cell_matrix(with_loss(layers, loss), self.omega, np.atleast_2d(kx) + 0j)
         trace = m.a + (m.e11 + m.e22) / 2
         with np.errstate(over="ignore"):
@@ -270,7 +272,8 @@ class FluidSlab(NamedTuple):
         for values in self.segments:
             mass = values.layers.mass
             uneven = 1 + shift / 8 * np.where(np.sin(2.4 * np.arange(mass.shape[0])) > 0, 1, -1)[:, None]
-            segments.append(values._replace(layers=values.layers._replace(mass=mass * uneven)))
+            layers = with_solids(values.layers, values.layers, lambda v, kind: v if kind else v * (1 + shift / 8))
+            segments.append(values._replace(layers=layers._replace(mass=mass * uneven)))
         return self._replace(omega=self.omega * (1 - shift), segments=segments)
 
     def rounded(self) -> FluidSlab:

@@ -13,6 +13,7 @@ from .interior import fill_interior
 from .interior_velocity import fill_velocity
 from .layer import State
 from .recursion import Station, carry_back
+from .solid_run import run_divisor
 
 
 class Response(NamedTuple):
@@ -56,7 +57,11 @@ def dispersion(
     """
     front, behind = (FluidValues(*(v[:, None] for v in f)) for f in (before, after))
     kz1, near, _ = _near(segments, front, behind, omega, kx, np.empty(0))
-    return 1j * kz1 * near.p + front.rho_z * near.q, near.log
+    log = near.log
+    for layers, periods in segments:  # the states' divisors have zeros, which the modes have not
+        for _, run in layers.solids:
+            log = log + periods * run_divisor(run, omega, np.broadcast_to(kx, near.p.shape))
+    return 1j * kz1 * near.p + front.rho_z * near.q, log
 
 
 def solve(
