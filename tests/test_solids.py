@@ -155,6 +155,22 @@ def test_full_transmission_of_a_steel_plate_where_it_was_computed_elsewhere():
     assert abs(ds.t).min() > 1 - 1e-5
 
 
+@pytest.mark.parametrize(
+    ("fd", "backward"),
+    [(2.75, 0.1180 - 0.0365j), (2.80, 0.0869 - 0.0227j), (2.85, 0.0613 - 0.0197j), (2.90, 0.0402 - 0.0202j), (3.0, 0.0131 - 0.0297j)],
+)  # fmt: skip
+def test_backward_leaky_modes_of_a_steel_plate_lie_below_the_axis(fd, backward):
+    """Next to the S1 zero-group-velocity point, fd in MHz mm; forward ones above the axis, and the count is whole."""
+    ds = bp.guided_modes(PLATE, fd * 1e6, strip_over_k0=0.12, leaky=True)
+    k, direction = ds.kx_over_k0.values, ds.direction.values
+    assert int(ds["count"]) == k.size
+    assert abs(k[direction < 0] - backward) == pytest.approx([0], abs=1e-4)
+    leaky = k[(direction > 0) & (k.real < 1)]
+    assert leaky.imag.min() > 0
+    if fd == 3.0:
+        assert sorted(leaky.real) == pytest.approx([0.22344, 0.24048, 0.43741, 0.51971], abs=1e-5)
+
+
 # --- beams -----------------------------------------------------------------------------------------------------
 
 PLATE = bp.Slab(bp.Layer(STEEL, 1e-3), background=WATER)
