@@ -1,10 +1,12 @@
 """Solid layers: plane waves against many digits, against stiffnesses, and against what physics demands."""
 
 import numpy as np
+import oracles
 import pytest
 import solid_oracles
 
 import beamprop as bp
+from beamprop import parameters
 
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
 IN_WATER = (1000.0, 1000.0 * 1480.0**2)
@@ -193,6 +195,26 @@ def test_a_beam_loses_most_of_its_power_where_a_plane_wave_passes():
     assert float(measures.power.sum()) == pytest.approx(1, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("frequency", "fd_note"), [(3e6, "backward mode beside kx = 0"), (1.5e6, "forward modes only")]
+)
+def test_a_beam_behind_a_plate_agrees_with_an_independent_quadrature(frequency, fd_note):
+    """The trapezoid rule on a contour between the axis and the backward modes, with the response by stiffnesses."""
+    k0 = 2 * np.pi * frequency / 1480
+    beam = bp.GaussianBeam(3e-3, angle=12.0)
+    kx, weight = oracles.bent_contour(k0, bend=60.0, band=1.6 * k0, count=6001)
+    t = np.array(
+        [solid_oracles.by_stiffness([(7900.0, 5900.0, 3200.0, 1e-3)], (1000.0, 1480.0), frequency, k)[1] for k in kx]
+    )
+    x = np.linspace(-8e-3, 12e-3, 81)
+    right, left = (
+        np.exp(sign * 1j * np.multiply.outer(x, kx)) @ (weight * t * beam.spectrum(sign * kx, k0)) for sign in (1, -1)
+    )
+    p = bp.field(PLATE, beam, frequency, x, 1e-3, rtol=1e-9)
+    assert abs(p.p.values - (right + left) / (2 * np.pi)).max() < 3e-9 * abs(p.p.values).max()
+    assert float(p.error_estimate) < 1e-9
+
+
 def test_fields_in_solids_obey_the_equations_of_elasticity():
     """-s_zz = -(L du_z/dz + lambda du_x/dx) by differences inside a plate, of a cell too; p and v_z are continuous at its faces."""
     w, h = 2 * np.pi * 3e6, 1e-6
@@ -258,3 +280,59 @@ def test_moduli_and_speeds_are_the_same_solid():
         assert complex(v.longitudinal_modulus[0]) == pytest.approx(bulk + 4 / 3 * shear, rel=1e-14)
         assert complex(v.shear_modulus[0]) == pytest.approx(shear, rel=1e-14)
     assert dispersive.dispersive
+
+
+# --- by name, in words, in tables ------------------------------------------------------------------------------
+
+
+def test_solids_by_name_in_words_and_in_tables(tmp_path):
+    steel = bp.Solid.from_material("steel")
+    assert parameters.layer("solid steel 1mm") == bp.Layer(steel, 1e-3)
+    assert parameters.layer("density=7850 speed=5960 shear_speed=3235 1mm") == bp.Layer(steel, 1e-3)
+    table = tmp_path / "layers.csv"
+    table.write_text("thickness_mm,density,speed,shear_speed\n1,7850,5960,3235\n2,1000,1480,\n")
+    assert bp.Slab.from_table(table).cell.layers == (
+        bp.Layer(steel, 1e-3),
+        bp.Layer(bp.Fluid.from_speed(1000, 1480), 2e-3),
+    )
+    with pytest.raises(ValueError, match=r"name: expected a material with a shear speed \(acrylic, .*got 'water'"):
+        bp.Solid.from_material("water")
+
+
+def test_datasets_tell_the_solids_they_are_of():
+    dispersive = bp.Solid.from_moduli(1200.0, 5e9 - 1e8j, lambda f: 1.5e9 * (1 - 1e-8j * f))
+    for solid in (STEEL, bp.Solid.from_moduli(1200.0, 5e9, 1.5e9)):
+        slab = bp.Slab(bp.Layer(solid, 1e-3), background=WATER)
+        assert bp.provenance(bp.scattering(slab, 1e6, angle=[0.0, 20.0]))["slab"] == slab
+    slab = bp.Slab(bp.Layer(dispersive, 1e-3), background=WATER)
+    again = bp.provenance(bp.scattering(slab, 1e6, angle=20.0))["slab"]
+    assert complex(bp.scattering(again, 1e6, angle=20.0).t) == pytest.approx(
+        complex(bp.scattering(slab, 1e6, angle=20.0).t), rel=1e-12
+    )
+
+
+def test_bloch_waves_of_a_cell_do_not_depend_on_where_it_begins():
+    layers = [bp.Layer(STEEL, 1e-3), bp.Layer(WATER, 1e-3), bp.Layer(ALUMINIUM, 5e-4)]
+    kx = np.linspace(0, 1.2, 25)
+    kz = [bp.bloch(bp.Cell(layers[i:] + layers[:i]), 3e5, kx_over_k0=kx, background=WATER).kz.values for i in range(3)]
+    for other in kz[1:]:
+        assert abs(other - kz[0]).max() < 1e-9 * abs(kz[0]).max()
+    # of many periods what passes decays by the imaginary part of kz
+    t = [abs(complex(bp.scattering(bp.Slab(layers, n, background=WATER), 3e5, kx_over_k0=1.2).t)) for n in (40, 41)]
+    assert np.log(t[0] / t[1]) == pytest.approx(kz[0][-1].imag * 2.5e-3, rel=1e-6)
+    with pytest.raises(ValueError, match="cell: expected a fluid beside the solids of a cell"):
+        bp.bloch(bp.Cell(layers[:1]), 3e5, kx=0.0)
+
+
+def test_copies_with_errors_keep_the_moduli():
+    copies = bp.tolerance(PLATE, density=0.1, count=2, seed=1)
+    solid = copies[0].cell.layers[0].fluid
+    ratio = solid.density.real / 7900
+    assert ratio != 1
+    assert solid.density * solid.shear_speed**2 == pytest.approx(7900 * 3200.0**2)
+
+
+def test_finite_elements_refuse_solids():
+    pytest.importorskip("skfem")
+    with pytest.raises(ValueError, match="slab: finite elements take layers of fluid, got Solid"):
+        bp.fem.field(PLATE, BEAM, 3e6, [0.0], [0.0], period=0.1)

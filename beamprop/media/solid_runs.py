@@ -37,7 +37,7 @@ def parts(slab: Slab) -> list[Part]:
         if alike:
             out.append(Part((tuple(group),), 1))
         else:
-            out += [Part(_items(layers), periods) for layers, periods in group]
+            out += [Part(items_of(layers), periods) for layers, periods in group]
     return out
 
 
@@ -60,7 +60,7 @@ def _cut(slab: Slab) -> Iterable[Stack]:
             yield tail, 1
 
 
-def _items(layers: tuple[Any, ...]) -> tuple[Any, ...]:
+def items_of(layers: tuple[Any, ...]) -> tuple[Any, ...]:
     """Layers with runs of solids as one item each."""
     items: list[Any] = []
     for solid, group in itertools.groupby(layers, key=is_solid):

@@ -108,6 +108,19 @@ class Solid:
         _check_moduli(np.asarray(bulk), np.asarray(shear), ("bulk_modulus", "shear_modulus"), active)
         return cls(rho, *(complex(speed(np.zeros(()))) for speed in speeds), active=active)
 
+    @classmethod
+    def from_material(cls, name: str) -> Solid:
+        """A solid of `materials` by its name, without loss.
+
+        Examples
+        --------
+        >>> bp.Solid.from_material("steel")
+        Solid(density=7850, longitudinal_speed=5960, shear_speed=3235)
+        """
+        from .materials import solid_numbers
+
+        return cls(*solid_numbers(name))
+
     @property
     def dispersive(self) -> bool:
         """Whether any property is a function of frequency."""

@@ -226,7 +226,7 @@ class Slab:
         ----------
         table : path, or DataFrame
             A header and a row a layer. Columns: `thickness`, and `material` (a name that `material` knows), or `density` with
-            `sound_speed` or `bulk_modulus`, and perhaps `attenuation` (Np/m; with `reference_frequency` and `exponent` a
+            `sound_speed` or `bulk_modulus`, and perhaps `shear_speed` (a solid) or `attenuation` (Np/m; with `reference_frequency` and `exponent` a
             power law); or `areal_density` alone, a membrane. SI units, or the one that the header names: ``thickness_mm``,
             ``density (g/cm3)``, ``attenuation [dB/cm]``. Empty cells are left out; so are lines of the file that begin with #.
         periods : int

@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .fluids import Fluid, FluidValues
-from .solid_runs import Part, has_solids, parts, run_values
+from .solid_runs import Part, has_solids, items_of, parts, run_values
 from .solids import SolidBlock
-from .structures import Cell, Layer, Membrane, Slab
+from .structures import Cell, Layer, Membrane, Slab, is_solid
 
 
 class LayerValues(NamedTuple):
@@ -121,6 +121,18 @@ def slab_values(slab: Slab | Sequence[Slab], frequency: np.ndarray) -> list[Segm
         return [_with_solids(part, frequency) for part in parts(slabs[0])]
     segments = zip(*(slab.segments for slab in slabs), strict=True)
     return [SegmentValues(layer_values([cell for cell, _ in pairs], frequency), pairs[0][1]) for pairs in segments]
+
+
+def period_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
+    """One period of an infinite stack; with solids it begins with a fluid, so that no run of solids is cut."""
+    solid = [is_solid(layer) for layer in cell.layers]
+    if not any(solid):
+        return layer_values(cell, frequency)
+    if all(solid):
+        raise ValueError("cell: expected a fluid beside the solids of a cell: solids alone carry two Bloch waves")
+    first = solid.index(False)
+    turned = items_of(cell.layers[first:] + cell.layers[:first])
+    return _with_solids(Part(turned, 1), frequency).layers
 
 
 def _with_solids(part: Part, frequency: np.ndarray) -> SegmentValues:
