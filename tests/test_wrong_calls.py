@@ -80,7 +80,7 @@ WRONG = [
         "frequency: expected a 1-D array of finite, strictly increasing positions, got [1, 1]",
     ),
     ("bp.Tabulated([1, 2], [2, 3, 4])", "values: expected one for each of 2 frequencies, got shape (3,)"),
-    ("bp.Layer(1.2, 0.1)", "fluid: expected a Fluid, got 1.2"),
+    ("bp.Layer(1.2, 0.1)", "fluid: expected a Fluid or a Solid, got 1.2"),
     ("bp.Layer(air, 0)", "thickness: expected a finite number above zero, got 0.0"),
     ("bp.Layer(air, -0.1)", "thickness: expected a finite number above zero, got -0.1"),
     ('bp.Layer(air, "2mm")', "thickness: expected a real number, got '2mm'"),

@@ -29,6 +29,7 @@ def described(text: str, name: str, known: Collection[str]) -> dict[str, Any]:
 
 
 def refused(given: Any, name: str) -> ValueError:
+    """What is no layer."""
     from .. import validate
 
     return validate.refuse(name, "a fluid and a thickness such as 'air 5mm' or 'density=1000 speed=1480 2mm'", given)
