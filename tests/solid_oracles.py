@@ -63,13 +63,18 @@ def _growth(layers, w, k):
 
 
 def response(layers, periods, before, after, frequency, kx, digits=50):
-    """r and t of `periods` copies of layers between two fluids (density, bulk modulus)."""
+    """r and t of `periods` copies of layers between two fluids (density, bulk modulus).
+
+    Behind may be a solid (density, longitudinal speed, shear speed): t is that of p = -s_zz.
+    """
     w = 2 * np.pi * float(frequency)
     with mp.workdps(int(digits + 30 + _growth(layers, w, kx) * periods)):
         w, k = mp.mpf(w), mp.mpmathify(kx)
         made = {layer: (_solid_back if len(layer) == 4 else _fluid_back)(*layer, w, k) for layer in set(layers)}
         back, solids = mp.eye(2), None
         for layer in [*list(layers) * periods, None]:
+            if layer is None and len(after) == 3:
+                break
             if layer is not None and len(layer) == 4:
                 solids = made[layer] if solids is None else solids * made[layer]
                 continue
@@ -77,10 +82,30 @@ def response(layers, periods, before, after, frequency, kx, digits=50):
                 back, solids = back * _between_fluids(solids), None
             if layer is not None:
                 back = back * made[layer]
-        y1, y2 = (1j * _outgoing(rho, K, w, k) / mp.mpmathify(rho) for rho, K in (before, after))
-        p, q = back[0, 0] + back[0, 1] * y2, back[1, 0] + back[1, 1] * y2
+        y1 = 1j * _outgoing(*before, w, k) / mp.mpmathify(before[0])
+        if len(after) == 3:
+            far_p, p, q = _in_front_of(after, mp.eye(4) if solids is None else solids, w, k)
+        else:
+            far_p, p, q = 1, 1, 1j * _outgoing(*after, w, k) / mp.mpmathify(after[0])
+        p, q = back[0, 0] * p + back[0, 1] * q, back[1, 0] * p + back[1, 1] * q
         incident = (p + q / y1) / 2
-        return complex((p - q / y1) / 2 / incident), complex(1 / incident)
+        return complex((p - q / y1) / 2 / incident), complex(far_p / incident)
+
+
+def _in_front_of(solid, solids, w, k):
+    """p of the half-space of solid, and p and q of the fluid in front of the solids (their matrix back) that touch it."""
+    rho, c_l, c_t = (mp.mpmathify(v) for v in solid)
+    states = []
+    for c, shear in ((c_l, 0), (c_t, 1)):
+        kz = _outgoing(rho, rho * c * c, w, k)
+        u_x, u_z = (-kz, k) if shear else (k, kz)
+        mu, lam = rho * c_t**2, rho * (c_l**2 - 2 * c_t**2)
+        s_zz, s_xz = 1j * ((lam + 2 * mu) * kz * u_z + lam * k * u_x), 1j * mu * (kz * u_x + k * u_z)
+        states.append(mp.matrix([-s_zz, -1j * w * w * u_x, w * w * u_z, -1j * s_xz]))
+    near = [solids * state for state in states]
+    share = -near[0][3] / near[1][3] if near[1][3] != 0 else mp.mpf(0)
+    p, q = (near[0][i] + share * near[1][i] for i in (0, 2))
+    return states[0][0] + share * states[1][0], p, q
 
 
 def _outgoing(rho, K, w, k):

@@ -262,6 +262,8 @@ def test_a_field_of_a_cell_is_that_of_its_layers_one_by_one():
         (lambda: bp.Solid.from_moduli(7900, 0, 1e9), "bulk_modulus: expected a number other than zero"),
         (lambda: bp.Slab(bp.Layer(STEEL, 1e-3), before=STEEL), "before: expected a Fluid"),
         (lambda: bp.Slab([bp.Layer(STEEL, 1e-3), bp.Membrane(1.0), bp.Layer(STEEL, 1e-3)]), "layers: expected a membrane beside a fluid"),
+        (lambda: bp.Slab([bp.Layer(STEEL, 1e-3), bp.Membrane(1.0)], after=STEEL), "layers: expected a membrane beside a fluid"),
+        (lambda: bp.Slab(bp.Layer(STEEL, 1e-3), background=STEEL), "background: expected a Fluid"),
         (lambda: bp.Slab([bp.Layer(STEEL, 1e-3), bp.Membrane(1.0)], 2), "layers: expected a membrane beside a fluid"),
         (lambda: bp.standard_emt(bp.Cell(bp.Layer(STEEL, 1e-3))).at(1e6), "cell: a layer: expected a Fluid"),
     ],

@@ -49,6 +49,8 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "t": ("1", "complex pressure transmission coefficient"),
     "reflectivity": ("1", "reflectivity |r|^2"),
     "transmissivity": ("1", "transmissivity |t|^2"),
+    "t_p": ("1", "P wave in the solid behind, rho w^2 phi over the incident pressure"),
+    "t_s": ("1", "S wave in the solid behind, rho w^2 psi over the incident pressure"),
     "energy_transmission": ("1", "transmitted share of the incident power"),
     "absorption": ("1", "absorbed share of the incident power"),
     "p": ("Pa", "complex sound pressure, exp(-i w t)"),

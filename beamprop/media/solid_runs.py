@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .solids import SolidBlock, SolidLayers
+from .solids import Solid, SolidBlock, SolidHalfSpace, SolidLayers
 from .structures import Layer, Membrane, Slab, is_solid
 
 #: Layers, and how often they repeat.
@@ -23,15 +23,33 @@ class Part(NamedTuple):
 
 
 def has_solids(slab: Slab) -> bool:
-    """Whether some layer is a solid."""
-    return any(is_solid(layer) for cell, _ in slab.segments for layer in cell.layers)
+    """Whether some layer, or the half-space behind, is a solid."""
+    return isinstance(slab.after, Solid) or any(is_solid(layer) for cell, _ in slab.segments for layer in cell.layers)
 
 
 def parts(slab: Slab) -> list[Part]:
     """The segments of a slab, cut anew: none begins or ends within a run of solids.
 
-    A cell that ends in a solid and begins with one is repeated from its first fluid on.
+    A cell that ends in a solid and begins with one is repeated from its first fluid on. A run in contact with a solid half-space is
+    left out: it goes with that.
     """
+    out = _parts(slab)
+    return out[:-1] if _last_run(slab, out) else out
+
+
+def solid_half_space(slab: Slab, frequency: np.ndarray) -> SolidHalfSpace:
+    """The half-space of solid behind a slab at frequencies [Hz] (F,), with the solids in contact with it."""
+    assert isinstance(slab.after, Solid)
+    return SolidHalfSpace(*slab.after.at(frequency), run_values(_last_run(slab, _parts(slab)), frequency))
+
+
+def _last_run(slab: Slab, out: list[Part]) -> tuple[Stack, ...]:
+    """The run of solids in contact with a solid half-space."""
+    last = out[-1].items[-1]
+    return last if isinstance(slab.after, Solid) and isinstance(last, tuple) else ()
+
+
+def _parts(slab: Slab) -> list[Part]:
     out: list[Part] = []
     for alike, group in itertools.groupby(_cut(slab), key=lambda stack: all(map(is_solid, stack[0]))):
         if alike:

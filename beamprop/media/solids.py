@@ -42,6 +42,15 @@ class SolidBlock(NamedTuple):
         return self.periods * float(self.layers.thickness.sum())
 
 
+class SolidHalfSpace(NamedTuple):
+    """A half-space of solid at F frequencies, arrays (F,), and the solid layers in contact with it, from the near side on."""
+
+    density: np.ndarray
+    longitudinal_modulus: np.ndarray
+    shear_modulus: np.ndarray
+    run: tuple[SolidBlock, ...]
+
+
 @dataclass(frozen=True)
 class Solid:
     """An isotropic elastic solid, which carries longitudinal and shear waves.

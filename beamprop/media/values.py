@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .fluids import Fluid, FluidValues
-from .solid_runs import Part, has_solids, items_of, parts, run_values
-from .solids import SolidBlock
+from .solid_runs import Part, has_solids, items_of, parts, run_values, solid_half_space
+from .solids import Solid, SolidBlock, SolidHalfSpace
 from .structures import Cell, Layer, Membrane, Slab, is_solid
 
 
@@ -160,11 +160,18 @@ def half_space_values(fluids: Sequence[Fluid], frequency: np.ndarray) -> FluidVa
     return FluidValues(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
+def behind_values(slabs: Sequence[Slab], frequency: np.ndarray) -> FluidValues | SolidHalfSpace:
+    """The half-space behind, of a slab, or of a slab for each frequency (slabs with solids: equal ones)."""
+    if isinstance(slabs[0].after, Solid):
+        return solid_half_space(slabs[0], frequency)
+    return half_space_values([slab.after for slab in slabs], frequency)  # type: ignore[misc]
+
+
 def layout(slab: Slab) -> tuple[Any, ...]:
     """What slabs have in common whose values fit into the same arrays: for each segment its periods, and which layers are membranes.
 
     Slabs with solids have it in common with equal ones only.
     """
     if has_solids(slab):
-        return slab.segments
+        return (*slab.segments, slab.after)
     return tuple((n, tuple(isinstance(layer, Membrane) for layer in cell.layers)) for cell, n in slab.segments)

@@ -72,7 +72,9 @@ SLAB: dict[str, Parameter] = CELL | {
         "The layers themselves, an effective medium (bare: without the interface term), or background only.",
         words=("exact", "lmmd-emt", "lmmd-emt-bare", "standard-emt", "none"),
     ),
-    "after": Parameter(None, as_it_is, "Material of the half-space behind, if it differs."),
+    "after": Parameter(
+        None, as_it_is, "Material of the half-space behind, if it differs: water, or 'solid steel' (with shear)."
+    ),
     "after_density": Parameter(None, number, "Of the half-space behind, if it differs [kg/m3]."),
     "after_speed": Parameter(None, number, "Of the half-space behind, if it differs [m/s]."),
 }
@@ -300,7 +302,7 @@ def _material(value: Any, key: str) -> Any:
     if isinstance(value, Mapping):
         return fluid_of(value)
     with named(key, "name"):
-        if key == "material" and isinstance(value, str) and value.startswith("solid "):
+        if key in ("material", "after") and isinstance(value, str) and value.startswith("solid "):
             return Solid.from_material(value.removeprefix("solid "))
         return material(value)
 

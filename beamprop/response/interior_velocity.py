@@ -18,7 +18,7 @@ from .interior import ROWS, by_layer, station_at, with_tails
 from .layer import State, layer_back, one_layer
 from .periods import power_back
 from .recursion import Places, Station, places_of, segment_of
-from .solid_run import inside_run
+from .solid_run import inside_run, quantity_of, without_zero
 
 
 def fill_velocity(
@@ -28,11 +28,11 @@ def fill_velocity(
     z: np.ndarray,
     near_log: np.ndarray,
     per_incident: np.ndarray,
-    along: str,
+    quantity: str,
 ) -> np.ndarray:
-    """v_z, or v_x over kx, at depths z inside the slab per unit incident pressure: (F, Z, n).
+    """v_z, or v_x or s_xz over kx, at depths z inside the slab per unit incident pressure: (F, Z, n).
 
-    `along` is "z" or "x". A depth on an interface belongs to the layer that begins there.
+    A depth on an interface belongs to the layer that begins there.
     """
     out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
     owner = segment_of(np.array([s.start for s in stations]), z)
@@ -46,28 +46,30 @@ def fill_velocity(
                 w, k, at_i = omega[i : i + 1], kx[i : i + 1], station_at(station, i)
                 layers = at_i.values.layers
                 for j, here, behind in _states_behind(at_i, w, k, places):
-                    v, log = _velocity(layers, j, (w, k), behind, places.share[here], along)
-                    out[i, block[here]] = v * np.exp(log - near_log[i]) * (per_incident[i] / w[0])
+                    v, log = _velocity(layers, j, (w, k), behind, places.share[here], quantity)
+                    out[i, block[here]] = v * np.exp(log - near_log[i]) * per_incident[i]
     return out
 
 
 def _velocity(
-    layers: LayerValues, j: int, w_and_kx: tuple[np.ndarray, np.ndarray], behind: State, share: np.ndarray, along: str
+    layers: LayerValues,
+    j: int,
+    w_and_kx: tuple[np.ndarray, np.ndarray],
+    behind: State,
+    share: np.ndarray,
+    quantity: str,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """w v_z, or w v_x over kx, and their logarithm at shares (Z,) of a layer."""
+    """A quantity of `fill_velocity`, and its logarithm at shares (Z,) of a layer."""
     w, kx = w_and_kx
     run = dict(layers.solids).get(j)
     if run is None:
         state = layer_back(behind, *one_layer(layers, j, w * w, kx * kx, share[:, None]))
-        return -1j * state.q if along == "z" else state.p * (layers.mobility[j, 0] / layers.thickness[j]), state.log
-    if along == "x":  # X = w v_x is odd in kx: its slope at kx = 0
-        kx = np.where(kx == 0, SLIGHT * np.abs(w), kx)
-    inside = inside_run(run, w, kx, behind, share * layers.thickness[j])
-    return -1j * inside.q if along == "z" else inside.X / kx, inside.log
-
-
-#: kx [s/m, times w] that stands for 0: its square is below the rounding of any layer's kx^2.
-SLIGHT = 1e-15
+        if quantity == "s_xz":
+            return 0 * state.p, state.log
+        v = -1j * state.q if quantity == "v_z" else state.p * (layers.mobility[j, 0] / layers.thickness[j])
+        return v / w, state.log
+    inside = inside_run(run, w, without_zero(kx, w), behind, share * layers.thickness[j])
+    return quantity_of(inside, quantity, w, without_zero(kx, w)), inside.log
 
 
 def _states_behind(

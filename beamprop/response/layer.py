@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..media.fluids import FluidValues
-from ..media.solids import SolidLayers
+from ..media.solids import SolidBlock, SolidLayers
 from ..media.values import LayerValues, SegmentValues
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
@@ -137,12 +137,17 @@ def with_solids(
         return values
     solids = []
     for slot, run in layers.solids:
-        blocks = []
-        for block in run:
-            density, modulus, shear = (change(v, kind) for kind, v in enumerate(block.layers[:3]))
-            blocks.append(block._replace(layers=SolidLayers(density, modulus, shear, block.layers.thickness)))
-        solids.append((slot, tuple(blocks)))
+        solids.append((slot, changed_run(run, change)))
     return values._replace(solids=tuple(solids))
+
+
+def changed_run(run: tuple[SolidBlock, ...], change: Callable[[np.ndarray, int], np.ndarray]) -> tuple[SolidBlock, ...]:
+    """A run of solids with its values changed."""
+    blocks = []
+    for block in run:
+        density, modulus, shear = (change(v, kind) for kind, v in enumerate(block.layers[:3]))
+        blocks.append(block._replace(layers=SolidLayers(density, modulus, shear, block.layers.thickness)))
+    return tuple(blocks)
 
 
 def properties(layers: LayerValues) -> list[np.ndarray]:
@@ -160,10 +165,12 @@ def with_loss(layers: LayerValues, loss: float) -> LayerValues:
         mobility=mobility - 1j * loss * np.abs(mobility),
     )
 
-    def of_solid(v: np.ndarray, kind: int) -> np.ndarray:
-        return v + 1j * loss * np.abs(v) if kind == 0 else 1 / (1 / v + 1j * loss / np.abs(v))
+    return with_solids(changed, layers, solid_with_loss(loss))
 
-    return with_solids(changed, layers, of_solid)
+
+def solid_with_loss(loss: float) -> Callable[[np.ndarray, int], np.ndarray]:
+    """The change of a solid's density and moduli by `loss`: see `with_solids`."""
+    return lambda v, kind: v + 1j * loss * np.abs(v) if kind == 0 else 1 / (1 / v + 1j * loss / np.abs(v))
 
 
 def half_space_with_loss(f: FluidValues, loss: float) -> FluidValues:
@@ -184,9 +191,10 @@ def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:
         v * (1 + shift * c) for v, c in zip((layers.mass, layers.compliance, layers.mobility), turn, strict=True)
     )
     changed = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+    return segment._replace(layers=with_solids(changed, layers, solid_perturbed(shift)))
+
+
+def solid_perturbed(shift: float) -> Callable[[np.ndarray, int], np.ndarray]:
+    """The same of a solid's density and moduli: see `with_solids`."""
     turns = np.random.default_rng(2)
-
-    def of_solid(v: np.ndarray, kind: int) -> np.ndarray:
-        return v * (1 + shift * np.exp(2j * np.pi * turns.random((len(v), 1))))
-
-    return segment._replace(layers=with_solids(changed, layers, of_solid))
+    return lambda v, kind: v * (1 + shift * np.exp(2j * np.pi * turns.random((len(v), 1))))

@@ -39,7 +39,7 @@ def run_matrix(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -
         return _plate(basis(run[0].layers, 0, omega, kx))
     one, zero = np.ones(np.broadcast_shapes(omega.shape, kx.shape), complex), 0.0
     ends = of_fluid(one, zero * one, zero * one.real), of_fluid(zero * one, one, zero * one.real)
-    by_p, by_q = (_minors_through(run, omega, kx, end) for end in ends)
+    by_p, by_q = (minors_through(run, omega, kx, end) for end in ends)
     v = _divisor_vector(run, omega, kx)
     size = np.maximum(by_p.log, by_q.log)
     (n11, n21), (n12, n22) = (
@@ -59,7 +59,7 @@ def run_back(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, far
         p = whole * far.p + (m.f22 * far.p - m.f12 * far.q)
         q = whole * far.q + (m.f11 * far.q - m.f21 * far.p)
         return _in_size(p, q, far.log + m.growth - logarithm(m.divisor))
-    near = _minors_through(run, omega, kx, of_fluid(far.p, far.q, far.log))
+    near = minors_through(run, omega, kx, of_fluid(far.p, far.q, far.log))
     p, q = to_fluid(near)
     return _in_size(p, q, near.log - run_divisor(run, omega, kx))
 
@@ -85,30 +85,54 @@ def inside_run(
 
     `far` is (1, n), or (Z, n) with a state for each depth.
     """
+    out = interior(run, omega, kx, of_fluid(far.p, far.q, far.log), behind)
+    return out._replace(log=out.log - run_divisor(run, omega, kx))
+
+
+def interior(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, far: Minors, behind: np.ndarray) -> Vector:
+    """The state in front of the far face as in `inside_run`, for the minors there, (1, n) or (Z, n); not over the run's divisor."""
     layers = [(b.layers, j) for b in run for _ in range(b.periods) for j in range(b.layers.thickness.size)]
     far_faces = np.cumsum([0.0, *(float(v.thickness[j]) for v, j in reversed(layers))])[::-1]
     owner = np.clip(np.searchsorted(-far_faces[1:], -behind, side="left"), 0, len(layers) - 1)
     out = Vector._make(np.empty((5, behind.size, kx.shape[-1]), complex))
-    rows = [np.arange(behind.size)] if far.p.shape[0] == 1 else [np.array([i]) for i in range(behind.size)]
+    rows = [np.arange(behind.size)] if far.a.shape[0] == 1 else [np.array([i]) for i in range(behind.size)]
     for group in rows:
-        state = State(*(v if v.shape[0] == 1 else v[group] for v in (far.p, far.q, far.log)))
-        for here, v in _through(layers, omega, kx, state, behind[group], owner[group], far_faces):
+        minors = Minors(*(v if v.shape[0] == 1 else v[group] for v in far))
+        for here, v in _through(layers, omega, kx, minors, behind[group], owner[group], far_faces):
             for whole, part in zip(out, v, strict=True):
                 whole[group[here]] = part
-    return out._replace(log=out.log - run_divisor(run, omega, kx))
+    return out
+
+
+#: kx [s/m, times w] that stands for 0: its square is below the rounding of any layer's kx^2.
+SLIGHT = 1e-15
+
+
+def without_zero(kx: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """kx with a slight value for 0: X and T, odd in kx, are told over kx."""
+    return np.where(kx == 0, SLIGHT * np.abs(omega), kx)
+
+
+def quantity_of(v: Vector, quantity: str, omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
+    """p, v_z, or v_x or s_xz over kx (not 0) of a state, without its logarithm."""
+    if quantity == "p":
+        return v.p
+    if quantity == "v_z":
+        return -1j * v.q / omega
+    return v.X / (kx * omega) if quantity == "v_x" else 1j * v.T / kx
 
 
 def _through(
     layers: list,
     omega: np.ndarray,
     kx: np.ndarray,
-    far: State,
+    far: Minors,
     behind: np.ndarray,
     owner: np.ndarray,
     faces: np.ndarray,
 ) -> Iterator[tuple[np.ndarray, Vector]]:
     """Indices of the depths in each layer, and the state there, before the run's divisor."""
-    minors = [of_fluid(far.p, far.q, far.log)]
+    minors = [far]
     for v, j in reversed(layers):
         minors.append(minors_back(minors[-1], basis(v, j, omega, kx)))
     minors = minors[::-1]
@@ -177,7 +201,8 @@ def _single(run: tuple[SolidBlock, ...]) -> bool:
     return len(run) == 1 and run[0].periods == 1 and run[0].layers.thickness.size == 1
 
 
-def _minors_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, minors: Minors) -> Minors:
+def minors_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, minors: Minors) -> Minors:
+    """Carry minors back through a run."""
     for block in reversed(run):
         if block.periods > 1:
             minors = block_back(block, omega, kx, minors)
@@ -190,7 +215,11 @@ def _minors_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarr
 def _divisor_vector(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> Vector:
     """The solution (0, 1 | 0, 0) of the far face, carried back: its T is Y_TX."""
     zero = np.zeros(np.broadcast_shapes(omega.shape, kx.shape), complex)
-    v = Vector(zero, zero + 1, zero, zero, zero.real)
+    return vector_through(run, omega, kx, Vector(zero, zero + 1, zero, zero, zero.real))
+
+
+def vector_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, v: Vector) -> Vector:
+    """Carry one solution back through a run."""
     for block in reversed(run):
         if block.periods > 1:
             v = block_back(block, omega, kx, v)

@@ -55,6 +55,14 @@ class Vector(NamedTuple):
     log: np.ndarray
 
 
+class Split(NamedTuple):
+    """What splits the state of a medium into P and S waves."""
+
+    kappa: np.ndarray
+    m: np.ndarray
+    e: np.ndarray
+
+
 class Basis(NamedTuple):
     """A layer at w and kx: what its matrix is made of."""
 
@@ -139,7 +147,7 @@ def _thick_back(far: Minors, y: Basis) -> Minors:
     n11, n12 = y.cos_s * n11 - sa * n12, sb * n11 + y.cos_s * n12
     n21, n22 = y.cos_s * n21 - sa * n22, sb * n21 + y.cos_s * n22
     growth = y.growth_p + y.growth_s
-    return _from_waves(n11, n12, n21, n22, x * np.exp(-growth), y, far.log + growth)
+    return from_waves((n11, n12, n21, n22), x * np.exp(-growth), y, far.log + growth)
 
 
 def _to_waves(f: Minors, y: Basis) -> tuple[np.ndarray, ...]:
@@ -151,10 +159,9 @@ def _to_waves(f: Minors, y: Basis) -> tuple[np.ndarray, ...]:
     return f.a, n12, n21, f.b, x
 
 
-def _from_waves(
-    n11: np.ndarray, n12: np.ndarray, n21: np.ndarray, n22: np.ndarray, x: np.ndarray, y: Basis, log: np.ndarray
-) -> Minors:
-    """Minors of N and f1 f2."""
+def from_waves(n: tuple[np.ndarray, ...], x: np.ndarray | float, y: Basis | Split, log: np.ndarray) -> Minors:
+    """Minors of N = n11, n12, n21, n22 and f1 f2."""
+    n11, n12, n21, n22 = n
     one = 1 - y.e
     q11 = (one - y.e) * x - y.kappa * one * n12 + y.m * n21
     q12 = 2 * y.m * one * x + one * one * n12 + y.m * y.m * n21
@@ -273,7 +280,13 @@ def _thick_vector(v: Vector, y: Basis, way: float) -> Vector:
     sp, ss = way * y.sin_p, way * y.sin_s
     f1, f2 = P * (y.cos_p * f1 + y.rho * sp * f2), P * (y.cos_p * f2 - y.a2 / y.rho * sp * f1)
     g1, g2 = S * (y.cos_s * g1 + y.b2 / y.rho * ss * g2), S * (y.cos_s * g2 - y.rho * ss * g1)
-    return Vector(one * f1 - y.m * g1, y.kappa * f1 + g1, f2 - y.kappa * g2, y.m * f2 + one * g2, v.log + growth)
+    return vector_of((f1, g1, f2, g2), y, v.log + growth)
+
+
+def vector_of(waves: tuple[Any, ...], y: Basis | Split, log: np.ndarray) -> Vector:
+    """The state of (f1, g1 | f2, g2)."""
+    (f1, g1, f2, g2), one = waves, 1 - y.e
+    return Vector(one * f1 - y.m * g1, y.kappa * f1 + g1, f2 - y.kappa * g2, y.m * f2 + one * g2, log)
 
 
 def _vector_normalised(v: Vector) -> Vector:
