@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .api.field import field
     from .api.fwhm import fwhm
     from .api.guided_modes import guided_modes
+    from .api.rayleigh_angle import rayleigh_angle
     from .api.save_field import save_field
     from .api.scattering import scattering
     from .comparison.fields import compare
@@ -78,6 +79,7 @@ _HOMES = {
     "api.field": ("field",),
     "api.fwhm": ("fwhm",),
     "api.guided_modes": ("guided_modes",),
+    "api.rayleigh_angle": ("rayleigh_angle",),
     "api.scattering": ("scattering",),
     "api.save_field": ("save_field",),
     "comparison.fields": ("compare",),
@@ -128,6 +130,7 @@ __all__ = [
     "plot",
     "power_law",
     "provenance",
+    "rayleigh_angle",
     "read_comsol",
     "save",
     "save_field",

@@ -148,3 +148,42 @@ def test_finite_elements_refuse_a_solid_behind():
     slab = bp.Slab(bp.Layer(WATER, 1e-3), before=WATER, after=STEEL)
     with pytest.raises(ValueError, match="slab: finite elements take a fluid behind, got Solid"):
         bp.fem.field(slab, BEAM, 1e6, [0.0], [0.0], period=0.1)
+
+
+def test_displacements_and_shear_stress_obey_the_equations_of_elasticity():
+    """s_xz = mu (du_x/dz + du_z/dx) by differences in a layer and behind; 0 in the water and on its faces."""
+    h, mu, w = 1e-6, 2700 * 3130.0**2, 2 * np.pi * 1e6
+    for z in (1.5e-4, LAYERED.thickness + 1e-3):
+        around = [z - h, z, z + h]
+        ds = bp.field(
+            LAYERED, BEAM, 1e6, [1e-3 - h, 1e-3, 1e-3 + h], around, rtol=1e-10, variables=["v_x", "u_x", "u_z", "s_xz"]
+        )
+        u_x, u_z, s_xz, v_x = (ds[name].values for name in ("u_x", "u_z", "s_xz", "v_x"))
+        sheared = u_x[2, 1] - u_x[0, 1] + u_z[1, 2] - u_z[1, 0]
+        assert s_xz[1, 1] == pytest.approx(mu * sheared / (2 * h), rel=1e-4)
+        assert v_x == pytest.approx(-1j * w * u_x)
+    s_xz = bp.field(LAYERED, BEAM, 1e6, 1e-3, [-1e-3, 0.0, 1e-4, 3e-4, 1e-3], variables="s_xz").s_xz.values
+    assert abs(s_xz[[0, 1, 3, 4]]).max() < 1e-9 * abs(s_xz[2])
+    fluids = bp.field(bp.Slab(bp.Layer(WATER, 1e-3), background=WATER), BEAM, 1e5, 0.0, [0.0, 1e-3], variables="s_xz")
+    assert not fluids.s_xz.any()
+    assert not fluids.error_estimate_s_xz.any()
+
+
+def test_the_angle_of_leaky_rayleigh_waves():
+    """Angles of the poles computed elsewhere; a shear wave slower than sound has none."""
+    for solid, angle in ((STEEL, 29.94), (bp.Solid(7900.0, 5790.0, 3100.0), 30.97), (ALUMINIUM, 30.30)):
+        assert bp.rayleigh_angle(WATER, solid) == pytest.approx(angle, abs=6e-3)
+    with pytest.raises(ValueError, match="solid: expected one with a leaky Rayleigh wave"):
+        bp.rayleigh_angle(WATER, bp.Solid(1180.0, 2700.0, 1340.0))
+
+
+def test_intensity_is_refused_in_solids():
+    """p v lacks the part of the shear stress."""
+    with pytest.raises(
+        ValueError, match=r"variables: expected an intensity at z in fluids .*got z = 0.0001 in a solid"
+    ):
+        bp.field(LAYERED, BEAM, 1e6, 0.0, [-1e-3, 1e-4], variables="intensity")
+    with pytest.raises(ValueError, match="variables: expected an intensity at z in fluids"):
+        bp.field(LAYERED, BEAM, 1e6, 0.0, LAYERED.thickness + 1e-3, variables="intensity")
+    water = bp.field(LAYERED, BEAM, 1e6, 0.0, [1e-3, 3e-3], variables="intensity")
+    assert float(water.intensity_z.min()) != 0

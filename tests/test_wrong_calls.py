@@ -219,11 +219,11 @@ WRONG = [
     ("bp.field(slab, beam, 2500, x, z, rtol=1)", "rtol: expected a value from 1e-12 to 0.1, got 1"),
     (
         'bp.field(slab, beam, 2500, x, z, variables="q")',
-        "variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got 'q'",
+        "variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got 'q'",
     ),
     (
         "bp.field(slab, beam, 2500, x, z, variables=[])",
-        "variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got []",
+        "variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got []",
     ),
     ('bp.field(slab, beam, 2500, x, z, progress="yes")', "progress: expected True, False or a function, got 'yes'"),
     (

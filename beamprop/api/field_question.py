@@ -69,7 +69,9 @@ def checked_question(
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
     axes = beams.axes | {"z": zs, "x": xs}
-    return question, Labels(axes, slab, beam, boundary, period, beams.rtol, checked_variables(variables))
+    return question, Labels(
+        axes, slab, beam, boundary, period, beams.rtol, checked_variables(variables, slab, np.atleast_1d(zs))
+    )
 
 
 def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:

@@ -27,6 +27,20 @@ def has_solids(slab: Slab) -> bool:
     return isinstance(slab.after, Solid) or any(is_solid(layer) for cell, _ in slab.segments for layer in cell.layers)
 
 
+def in_solid(slab: Slab, z: np.ndarray) -> np.ndarray:
+    """Which depths z (Z,) [m] lie in a solid; its near face does, its far face does not."""
+    out, start = np.zeros(z.shape, bool), 0.0
+    for cell, periods in slab.segments:
+        depth, end = z - start, cell.thickness * periods
+        depth = np.where((depth >= 0) & (depth < end), np.mod(depth, cell.thickness or 1.0), -1.0)
+        near = 0.0
+        for layer in cell.layers:
+            out |= is_solid(layer) & (depth >= near) & (depth < near + layer.thickness)
+            near += layer.thickness
+        start += end
+    return out | ((z >= start) & isinstance(slab.after, Solid))
+
+
 def parts(slab: Slab) -> list[Part]:
     """The segments of a slab, cut anew: none begins or ends within a run of solids.
 
