@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from .media.lmmd import lmmd_cell
     from .media.materials import material, materials
     from .media.membranes import Membrane
+    from .media.planes import faces
     from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
     from .media.solids import Solid
@@ -62,6 +63,7 @@ _HOMES = {
         "narrow_slits",
         "narrow_tubes",
     ),
+    "media.planes": ("faces",),
     "media.properties": ("Tabulated",),
     "media.membranes": ("Membrane",),
     "media.solids": ("Solid",),
@@ -114,6 +116,7 @@ __all__ = [
     "compare",
     "delany_bazley_miki",
     "export",
+    "faces",
     "fem",
     "field",
     "fwhm",

@@ -94,6 +94,8 @@ def numeric(value: Any, name: str, expected: str = "a number or an array of numb
 def _scalar(value: Any, name: str, expected: str) -> complex | float:
     if type(value) in (float, complex):  # of the many layers of a slab; everything else is looked at closely
         return value
+    if type(value) in (np.float64, np.complex128):
+        return value.item()
     array = numeric(value, name, expected)
     if array.ndim:
         raise refuse(name, expected, value)
@@ -158,6 +160,10 @@ def within(values: Any, name: str, *, zero: bool = False) -> None:
 
 def axis(value: Any, name: str, *, kind: type = float, positive: bool = False) -> np.ndarray:
     """A scalar or 1-D array of finite numbers, as an array of `kind`: float, or complex."""
+    if (
+        type(value) is float and (value > 0 or not positive) and (is_usual(value) or value == 0)
+    ):  # of the many points of a study
+        return np.array(value, kind)
     array = numeric(value, name, "a number or a 1-D array of numbers")
     if np.iscomplexobj(array) and kind is not complex:
         raise refuse(name, "real numbers", _Said("complex ones"))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import matplotlib
 import xarray as xr
+from matplotlib import style
 
 import beamprop as bp
 
@@ -21,6 +22,9 @@ LOSSLESS = (0.05, 0.0)
 DESIGN = 2500.0
 FWHM = 0.096
 WAVELENGTH = 343.0 / DESIGN
+#: Two columns of a journal [inches], and the style of every figure.
+PAGE = 180 / 25.4
+in_style = style.context("beamprop.plot.paper")
 
 
 def slab(periods: int, loss: tuple[complex, float] = LOSSES["a"], **cell: float) -> bp.Slab:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import DESIGN, Statement, run, slab, three_media
+from common import DESIGN, PAGE, Statement, in_style, run, slab, three_media
 
 import beamprop as bp
 
@@ -31,15 +31,21 @@ def deviation(ds: xr.Dataset, medium: str) -> float:
     return float(np.sqrt(((T.sel(medium=medium) / T.sel(medium="TMM") - 1) ** 2).mean()))
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     """Four panels, four curves each."""
-    fig, axes = plt.subplots(2, 2, figsize=(9, 6.5), layout="constrained")
+    fig, axes = plt.subplots(2, 2, figsize=(PAGE, 4.8), layout="constrained")
     for (panel, ds), ax in zip(data.items(), axes.flat, strict=True):
         draw_media(ds, ax)
         ax.set(ylim=(0, None), xlim=(0, 1))
-        ax.set_title(f"({panel}) {PERIODS[panel]} periods", loc="left", fontsize="medium")
-    axes.flat[0].legend(fontsize="small")
+        ax.set_title(f"({panel}) {PERIODS[panel]} periods", loc="left")
+    below(fig, axes.flat[0])
     return fig
+
+
+def below(fig: plt.Figure, ax: plt.Axes) -> None:
+    """One legend for all panels, below them."""
+    fig.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
 def draw_media(ds: xr.Dataset, ax: plt.Axes, log: bool = False) -> None:

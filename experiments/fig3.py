@@ -5,8 +5,8 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import LOSSES, Statement, run, slab
-from fig2 import by_medium, draw_media
+from common import LOSSES, PAGE, Statement, in_style, run, slab
+from fig2 import below, by_medium, draw_media
 
 
 def compute(quick: bool = False) -> dict[str, xr.Dataset]:
@@ -21,16 +21,17 @@ def decades(ds: xr.Dataset, medium: str, evanescent: bool) -> float:
     return float(np.sqrt((np.log10(part.sel(medium=medium) / part.sel(medium="TMM")) ** 2).mean()))
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     """Three panels, four curves each, logarithmic."""
-    fig, axes = plt.subplots(1, 3, figsize=(13, 4), layout="constrained")
+    fig, axes = plt.subplots(1, 3, figsize=(PAGE, 2.6), layout="constrained")
     for (panel, ds), ax in zip(data.items(), axes, strict=True):
         draw_media(ds, ax, log=True)
         rho_m, delta = LOSSES[panel]
-        ax.set_title(f"({panel}) ρm = {rho_m:g}, δρ = {delta:g}", loc="left", fontsize="medium")
+        ax.set_title(f"({panel}) ρm = {rho_m:g}, δρ = {delta:g}", loc="left")
         low = float(ds.transmissivity.sel(medium=["TMM", "LMMD EMT"]).min())
         ax.set_ylim(max(low / 100, 1e-30), 10 * float(ds.transmissivity.sel(medium="TMM").max()))
-    axes[0].legend(fontsize="small")
+    below(fig, axes[0])
     return fig
 
 

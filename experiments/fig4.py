@@ -5,10 +5,9 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import DESIGN, LOSSES, Statement, run
+from common import DESIGN, LOSSES, PAGE, Statement, in_style, run
 
 import beamprop as bp
-from beamprop.plot import STYLES
 
 ETAS = (100, 60, 40, 20)
 LAYERS = (14, 10, 6)
@@ -28,19 +27,16 @@ def compute(quick: bool = False) -> dict[str, xr.Dataset]:
     return {"a": a, "b": b}
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     """Both signs of kz, as in the paper; thin dotted lines are the decay."""
-    fig, axes = plt.subplots(1, 2, figsize=(10, 4.6), layout="constrained")
+    fig, axes = plt.subplots(1, 2, figsize=(PAGE, 3.2), layout="constrained")
     names = {"a": ("inverse_eta", "η = 1/{}"), "b": ("n_layers", "N = {}")}
     for (panel, ds), ax in zip(data.items(), axes, strict=True):
         dim, text = names[panel]
-        for value, style in zip(ds[dim].values, STYLES, strict=False):
-            before = len(ax.lines)
+        for value in ds[dim].values:
             bp.plot.bloch(ds.sel({dim: value}), ax=ax, label=text.format(value), mirror=True)
-            for line in ax.lines[before::2]:
-                line.set_linestyle(style)
-        ax.legend(loc="center", ncols=2, fontsize="small", bbox_to_anchor=(0.5, 0.7))
-        ax.set_title(f"({panel})", loc="left", fontsize="medium")
+        ax.set_title(f"({panel})", loc="left")
     return fig
 
 

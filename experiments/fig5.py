@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import DESIGN, FWHM, LOSSES, LOSSLESS, WAVELENGTH, Statement, run, slab
+from common import DESIGN, FWHM, LOSSES, LOSSLESS, PAGE, WAVELENGTH, Statement, in_style, run, slab
 
 import beamprop as bp
 
@@ -20,14 +20,15 @@ def compute(quick: bool = False) -> dict[str, xr.Dataset]:
     x = np.linspace(-1.0, 1.0, nx)
     z = np.linspace(LAUNCH, lossy.thickness + WAVELENGTH, nz)
     beam = bp.GaussianBeam(FWHM, z0=LAUNCH)
-    air = bp.field(bp.Slab.uniform(bp.AIR, lossy.thickness), beam, DESIGN, x, z)
-    return {
-        "air": air,
-        **{
-            name: bp.field(s, beam, DESIGN, x, z, angle=ANGLES)
-            for name, s in (("lossless", lossless), ("lossy", lossy))
-        },
-    }
+    air = bp.Slab.uniform(bp.AIR, lossy.thickness)
+    data = {}
+    for name, s, angles in (("air", air, 0.0), ("lossless", lossless, ANGLES), ("lossy", lossy, ANGLES)):
+        maps = bp.faces(s, nz // 2, before=-LAUNCH, after=WAVELENGTH)  # on faces of cells, so that they show no stripes
+        data[name] = bp.field(s, beam, DESIGN, x, maps, angle=angles)
+        for where, depth in (("near", WAVELENGTH / 2), ("far", s.thickness - WAVELENGTH / 2)):
+            planes = z[np.abs(z - depth) <= WAVELENGTH / 20]
+            data[f"{name} {where}"] = bp.field(s, beam, DESIGN, x, planes, angle=angles)
+    return data
 
 
 def panels(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
@@ -38,9 +39,10 @@ def panels(data: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
     return out
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
     """Seven maps on one scale per medium, Re p and |p| side by side."""
-    fig, axes = plt.subplots(4, 4, figsize=(12, 15), layout="compressed")
+    fig, axes = plt.subplots(4, 4, figsize=(PAGE, 9.0), layout="compressed")
     titles = {"a": "air", "b": "lossless", "c": "lossless", "d": "lossless", "e": "lossy", "f": "lossy", "g": "lossy"}
     places = {"a": 0, "b": 4, "c": 8, "d": 12, "e": 6, "f": 10, "g": 14}
     for letter, ds in panels(data).items():
@@ -49,21 +51,21 @@ def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
             bp.plot.field(ds, what, ax=ax, colorbar=what == "abs")
             angle = float(ds.angle)
             ax.set_title("")
-            ax.set_title(f"({letter}) {titles[letter]}, {angle:g}°", loc="left", fontsize="medium")
+            ax.set_title(f"({letter}) {titles[letter]}, {angle:g}°", loc="left")
     for ax in axes.flat[2:4]:
         ax.axis("off")
     return fig
 
 
-def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
+def inside_widths(data: dict[str, xr.Dataset], name: str, angle: float) -> tuple[float, float]:
     """Widths of |p| half a wavelength behind the near face and half a wavelength before the far face [m].
 
     |p| ripples within a cell by about its own mean; the mean of |p|^2 over a tenth of a wavelength is taken.
     """
-    thickness = ds.attrs["slab_thickness"]
     out = []
-    for depth in (WAVELENGTH / 2, thickness - WAVELENGTH / 2):
-        part = ds.p.sel(z=slice(depth - WAVELENGTH / 20, depth + WAVELENGTH / 20))
+    for where in ("near", "far"):
+        p = data[f"{name} {where}"].p
+        part = p.sel(angle=angle) if "angle" in p.dims else p
         out.append(float(bp.fwhm(np.sqrt((np.abs(part) ** 2).mean("z")))))
     return out[0], out[1]
 
@@ -71,7 +73,7 @@ def inside_widths(ds: xr.Dataset) -> tuple[float, float]:
 def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
     """Broadening in air, none in the slab."""
     rows = []
-    first, last = inside_widths(data["air"])
+    first, last = inside_widths(data, "air", 0.0)
     rows.append(
         Statement(
             "5(a)",
@@ -83,8 +85,8 @@ def statements(data: dict[str, xr.Dataset]) -> list[Statement]:
     for letter, ds in panels(data).items():
         if letter == "a":
             continue
-        first, last = inside_widths(ds)
         medium = "lossless" if letter in "bcd" else "lossy"
+        first, last = inside_widths(data, medium, float(ds.angle))
         change = 100 * (last / first - 1)
         rows.append(
             Statement(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
-from common import FWHM, LOSSES, LOSSLESS, Statement, run, slab
+from common import FWHM, LOSSES, LOSSLESS, PAGE, Statement, in_style, run, slab
 
 import beamprop as bp
 
@@ -41,15 +41,17 @@ def by_fem(structure: bp.Slab, beam: bp.GaussianBeam, frequencies: tuple[float, 
     return ds
 
 
+@in_style
 def plot(data: dict[str, xr.Dataset]) -> plt.Figure:
-    """Incident and air once, both media as markers."""
-    fig, ax = plt.subplots(figsize=(6.2, 4.2), layout="constrained")
+    """Incident and air once, both media, finite elements as markers."""
+    fig, ax = plt.subplots(figsize=(PAGE, 4.0), layout="constrained")
     bp.plot.width(data["lossy"], ax=ax)
     ax.lines[1].set_label("behind the lossy slab")
     ds = data["lossless"]
-    ax.plot(ds.frequency, ds.fwhm_out * 100, "x", ms=4, label="behind the lossless slab")
-    ax.plot(data["fem"].frequency, data["fem"].fwhm_fem * 100, "k+", ms=9, label="lossy slab, finite elements")
-    ax.legend(fontsize="small")
+    ax.plot(ds.frequency, ds.fwhm_out * 100, "C1-.", label="behind the lossless slab")
+    ax.plot(data["fem"].frequency, data["fem"].fwhm_fem * 100, "C2+", ms=9, label="lossy slab, finite elements")
+    ax.get_legend().remove()
+    fig.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return fig
 
 

@@ -166,10 +166,26 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"path": draw_text_file},
         {"x": lambda r: "x", "expression": lambda r: "p", "conjugate": draw_flag},
     ),
+    "faces": (bp.faces, {"slab": draw_slab}, {"planes": lambda r: 50, "before": magnitude, "after": magnitude}),
     "plot.field": (
         bp.plot.field,
         {"ds": draw_answer},
-        {"quantity": lambda r: "real", "colorbar": draw_flag, "limit": magnitude},
+        {
+            "quantity": lambda r: pick(r, bp.plot.QUANTITIES),
+            "colorbar": draw_flag,
+            "limit": magnitude,
+            "half_level": draw_flag,
+        },
+    ),
+    "plot.cut": (
+        bp.plot.cut,
+        {"ds": draw_answer},
+        {"z": lambda r: 0.0, "quantity": lambda r: pick(r, bp.plot.QUANTITIES)},
+    ),
+    "plot.animate": (
+        bp.plot.animate,
+        {"ds": draw_answer, "path": lambda r: draw_text_file(r).with_suffix(".gif")},
+        {"frames": lambda r: 2, "limit": magnitude},
     ),
     "plot.scattering": (
         bp.plot.scattering,
@@ -177,7 +193,13 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"quantity": lambda r: "absorption", "log": draw_flag, "label": lambda r: "a"},
     ),
     "plot.bloch": (bp.plot.bloch, {"ds": draw_answer}, {"imaginary": draw_flag, "mirror": draw_flag}),
-    "plot.width": (bp.plot.width, {"ds": draw_answer}, {"label": lambda r: "a"}),
+    "plot.width": (bp.plot.width, {"ds": draw_answer}, {"label": lambda r: "a", "along": lambda r: "angle"}),
+    "plot.modes": (bp.plot.modes, {"ds": draw_answer}, {"label": lambda r: "a"}),
+    "plot.sweep": (
+        bp.plot.sweep,
+        {"ds": draw_answer},
+        {"log": draw_flag, "along": lambda r: "x", "band": lambda r: "frequency", "percentiles": lambda r: (10, 90)},
+    ),
     "plot.comparison": (bp.plot.comparison, {"cmp_ds": draw_answer}, {}),
     "fem.plan": (
         bp.fem.plan,

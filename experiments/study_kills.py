@@ -1,7 +1,7 @@
 """Kill studies at random moments, go on, and compare their stores with one that nobody disturbed, bit for bit.
 
     python experiments/study_kills.py                      # 20 kills of the main process, 10 of a worker
-    python experiments/study_kills.py --main 0 --workers 0 --dask 5
+    python experiments/study_kills.py --dask 10            # and 10 of a worker of dask
 
 Each study has 300 points of five milliseconds, in blocks of six, two processes, and so four blocks under way at most. The table says how
 many blocks were answered more than once, which may be those under way alone, and how many workers outlived their main process by two seconds.
@@ -87,7 +87,7 @@ def started(path: Path, log: Path, cluster: bool = False) -> subprocess.Popen:
     command = [
         sys.executable,
         "-W",
-        "ignore",
+        "ignore::RuntimeWarning",
         __file__,
         "--run",
         str(path),
@@ -189,7 +189,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--main", type=int, default=20)
     parser.add_argument("--workers", type=int, default=10)
-    parser.add_argument("--dask", type=int, default=0)
+    parser.add_argument("--dask", type=int, default=0, help="kills of a worker of dask")
     parser.add_argument("--run", nargs=2, help=argparse.SUPPRESS)
     parser.add_argument("--cluster", action="store_true", help=argparse.SUPPRESS)
     options = parser.parse_args()

@@ -9,15 +9,27 @@ from pathlib import Path
 PAGES = Path(__file__).parents[1] / "docs"
 
 
-def main(name: str, table: Path, pages: Path = PAGES) -> None:
+def place(name: str, pages: Path = PAGES) -> tuple[Path, re.Match[str]]:
+    """The one page that has the marks of a table, and the match: what stands between them is its second group."""
+    pattern = re.compile(rf"(<!-- table:{re.escape(name)} -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+    found = [
+        (page, m) for page in sorted(pages.glob("*.md")) for m in pattern.finditer(page.read_text(encoding="utf-8"))
+    ]
+    if len(found) != 1:
+        sys.exit(f"expected one table named {name} in {pages}, found {len(found)}")
+    return found[0]
+
+
+def put(name: str, rows: str, pages: Path = PAGES) -> None:
     """Replace what stands between ``<!-- table:NAME -->`` and ``<!-- end -->`` in the one page that has these marks."""
-    pattern = re.compile(rf"(<!-- table:{re.escape(name)} -->\n).*?(<!-- end -->)", re.DOTALL)
-    texts = {page: page.read_text(encoding="utf-8") for page in sorted(pages.glob("*.md"))}
-    holders = [page for page, text in texts.items() for _ in pattern.findall(text)]
-    if len(holders) != 1:
-        sys.exit(f"expected one table named {name} in {pages}, found {len(holders)}")
-    rows = table.read_text(encoding="utf-8").rstrip("\n") + "\n"
-    holders[0].write_text(pattern.sub(lambda m: m[1] + rows + m[2], texts[holders[0]]), encoding="utf-8")
+    page, match = place(name, pages)
+    text = match.string[: match.start(2)] + rows.rstrip("\n") + "\n" + match.string[match.end(2) :]
+    page.write_text(text, encoding="utf-8")
+
+
+def main(name: str, table: Path, pages: Path = PAGES) -> None:
+    """Put a table from a file into its place."""
+    put(name, table.read_text(encoding="utf-8"), pages)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ What the accuracy study's reference computes too, is its: scattering matrices, l
 * `emt_transmissivity`: the paper's Eq. (11), a homogeneous slab without lateral motion.
 * `air_beam`: the angular-spectrum integral in a homogeneous fluid, trapezoid rule on a bent contour.
 * `plane_wave_flow`, `open_flow`: pressure and particle velocity by 2 x 2 matrices from face to face, and summed as `open_field` is.
-* `open_field`: the open-space field by the trapezoid rule on a bent contour that passes below the poles and the branch point on
-  the right and above those on the left.
+
+The open-space field, `open_field`, is the accuracy study's, too.
 """
 
 from __future__ import annotations
@@ -16,10 +16,20 @@ from __future__ import annotations
 import mpmath as mp
 import numpy as np
 from accuracy_study.reference import many_digits
-from accuracy_study.reference.medium import Medium
+from accuracy_study.reference.plain import bent_contour, open_field
 from accuracy_study.reference.quadrature import field_sum
 
 import beamprop as bp
+
+__all__ = [
+    "air_beam",
+    "bloch_phase",
+    "emt_transmissivity",
+    "open_field",
+    "open_flow",
+    "plane_wave_flow",
+    "slab_response",
+]
 
 
 def _isotropic(layers):
@@ -69,15 +79,6 @@ def emt_transmissivity(rho_eff, thickness, k0, kx):
 # --- beams ------------------------------------------------------------------------------------------------
 
 
-def bent_contour(k0, bend=3.0, band=220.0, count=3001):
-    """The right half of kx = s - i bend tanh(2 s/k0), below the axis, and its weights dkx/ds ds: the trapezoid rule from 0."""
-    s = np.linspace(0, band, count)
-    slope = 1 - 1j * bend * (2 / k0) / np.cosh(np.minimum(2 * s / k0, 300)) ** 2
-    weight = slope * (s[1] - s[0])
-    weight[0] /= 2
-    return s - 1j * bend * np.tanh(2 * s / k0), weight
-
-
 def air_beam(spectrum, k0, x, distances):
     """p(distance, x) of a beam that meets nothing: S(kx) exp(i kz distance), on the bent contour."""
     kx, weight = bent_contour(k0, bend=2.0)
@@ -86,20 +87,6 @@ def air_beam(spectrum, k0, x, distances):
         return np.exp(1j * np.multiply.outer(np.asarray(distances), np.sqrt(k0**2 - k**2)))
 
     return field_sum(lambda k, kz: spectrum(k), propagated, kx, weight, None, np.asarray(x))
-
-
-def open_field(slab, frequency, spectrum, z0, x, z, **contour):
-    """p(z, x) in open space: the trapezoid rule on the bent contour, with the accuracy study's cascade of scattering matrices.
-
-    spectrum: S(kx) of the pressure on the launch plane z0; contour: bend, band and count of `bent_contour`.
-    """
-    medium = Medium(slab, frequency)
-    kx, weight = bent_contour(medium.k0, **contour)
-
-    def response(k):
-        return medium.response(k, np.asarray(z), z0)
-
-    return field_sum(lambda k, kz: spectrum(k), response, kx, weight, None, np.asarray(x))
 
 
 # --- particle velocity ------------------------------------------------------------------------------------

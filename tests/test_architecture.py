@@ -51,9 +51,9 @@ ONLY = {
     "io": {"memory", "validate", "media", "sources"},
     "fem": {"conventions", "memory", "validate", "progress", "media", "sources", "io"},
     "comparison": {"validate", "sources", "profiles", "io", "api"},
-    "plot": {"validate"},
+    "plot": {"validate", "media", "profiles", "io"},
     "parameters": {"memory", "validate", "media", "sources"},
-    "study": {"memory", "validate", "progress", "media", "io", "api", "parameters"},
+    "study": {"memory", "validate", "progress", "media", "io", "api", "plot", "parameters"},
 }
 
 

@@ -237,7 +237,7 @@ def test_spectra_by_frequency_are_drawn(tmp_path):
 def test_an_answer_that_cannot_be_drawn_is_not_written(tmp_path, monkeypatch):
     """The picture comes first: where it fails, there is no file."""
     monkeypatch.setattr(
-        "beamprop.plot.bloch", lambda ds: (_ for _ in ()).throw(ValueError("ds: expected what is not there"))
+        "beamprop.plot.bloch", lambda ds, **_o: (_ for _ in ()).throw(ValueError("ds: expected what is not there"))
     )
     arguments = ["bloch", "--kx-over-k0", "0,1", "-o", str(tmp_path / "a.nc"), "-p", str(tmp_path / "a.png")]
     assert CliRunner().invoke(main, arguments).exit_code == 2

@@ -43,7 +43,7 @@ WRONG = [
     ("field", [*P, "--x", "nan"], "x"),
     ("field", [*P, "--period", "1"], "period"),
     ("field", [*P, "--boundary", "closed"], "--boundary"),
-    ("field", [*P, "--quantity", "phase"], "--quantity"),
+    ("field", [*P, "--quantity", "angle"], "--quantity"),
     ("field", [*P, "--boundary", "periodic", "--period", "0.01"], "period"),
     ("field", [*P, "--boundary", "periodic", "--x", "0,0.1,0.5"], "period"),
     ("spectrum", [*P, "--kx", "0,1", "--angle", "0,3"], "--kx, --angle: expected exactly one"),

@@ -3,6 +3,7 @@
 import matplotlib
 import numpy as np
 import pytest
+from drawn_texts import faults
 from slanted_beam import make, swept
 
 from beamprop.comparison.fields import compare
@@ -53,6 +54,24 @@ def test_picture_without_fields_and_in_given_axes(figure):
 def test_picture_of_odd_cases(figure, pair):
     axes = comparison(compare(*pair))
     axes[-1].figure.canvas.draw()
+
+
+@pytest.mark.parametrize("width", [88, 180])
+@pytest.mark.parametrize("shape", [(1.0, 0.6), (0.2, 2.0), (3.0, 0.3)], ids=["square", "flat", "steep"])
+@pytest.mark.parametrize("size", [1.0, 4e-8])
+def test_no_letter_is_cut_or_overlaps(figure, monkeypatch, width, shape, size):
+    """Of both layouts, with maps and without; one scale for both fields, whose ends are told by tips."""
+    x, z = shape[0] * np.linspace(-0.5, 0.5, 61), shape[1] * np.linspace(0, 1, 31)
+    p = size * np.exp(-((x / shape[0] * 6) ** 2) + 5j * z[:, None] / shape[1])
+    c = compare(make(x, z, values=p), make(x, z, values=p * (1 + 0.2j * x / shape[0])))
+    for ds, pictures in ((c, 5), (c.drop_vars(["p_a", "p_b", "error"]), 2)):
+        axes = comparison(ds, width=width)
+        assert axes.size == pictures
+        assert faults(axes[0].figure, monkeypatch) == []
+        assert axes[0].figure.get_figwidth() * 25.4 == pytest.approx(width)
+        assert axes[0].figure.get_figheight() * 25.4 < 247
+    lower = figure.subplots()[1]
+    assert comparison(c, ax=lower) is lower
 
 
 def test_picture_refuses(figure):

@@ -3,11 +3,10 @@
 import ast
 import re
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import click
+import doc_snippets
 import materials
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -24,16 +23,11 @@ from beamprop.cli import main
 CHECKOUT = Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
 PAGES = [README, CHECKOUT / "CONTRIBUTING.md", *sorted((CHECKOUT / "docs").glob("*.md"))]
-#: A mark before a block that ends the process it runs in.
-OWN_PROCESS = "<!-- own process -->"
-#: A block: the line before it, its kind, its text.
-BLOCK = re.compile(r"^([^\n]*)\n```(\w*)\n(.*?)^```\n", re.MULTILINE | re.DOTALL)
 
 
 def blocks(page, kind):
     """(the line before it, text) of every block of a kind."""
-    found = BLOCK.findall(page.read_text(encoding="utf-8"))
-    return [(before, text) for before, of, text in found if of == kind]
+    return [(block.before, block.text) for block in doc_snippets.blocks(page.read_text(encoding="utf-8"), kind)]
 
 
 def with_blocks(kind):
@@ -53,15 +47,21 @@ def scratch(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("page", with_blocks("python"))
-def test_snippets_run(page, scratch, capsys):
-    """Every Python block, from the top of a page to its end, with the names of those before; warnings are errors."""
-    names = {}
-    for before, text in blocks(page, "python"):
-        if before == OWN_PROCESS:  # HDF5's end on a full disk
-            done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, check=False)
-            assert "File too large" in done.stdout + done.stderr
-        else:
-            exec(compile(text, f"{page.name}: {text.splitlines()[0]}", "exec"), names)
+def test_snippets_run(page, scratch):
+    """Every Python block, from the top of a page to its end; warnings are errors. What a page says that they print and draw, they do.
+
+    `python experiments/doc_snippets.py PAGE.md` writes both anew.
+    """
+    text = page.read_text(encoding="utf-8")
+    for block, printed in doc_snippets.run(text, page.name):
+        if block.before == doc_snippets.OWN_PROCESS:  # HDF5's end on a full disk
+            assert "File too large" in printed
+        elif block.printed is not None:
+            assert printed == block.printed, block.text
+    for name in doc_snippets.images(text):
+        made, shown = (plt.imread(folder / name) for folder in (scratch, page.parent / "images"))
+        assert shown.shape == made.shape, name
+        assert np.mean(np.abs(shown - made)) < 0.01, name
 
 
 def commands():
@@ -69,7 +69,7 @@ def commands():
     found = []
     for page in PAGES:
         for _, text in blocks(page, "sh"):
-            for line in text.splitlines():
+            for line in text.replace("\\\n", " ").splitlines():
                 for part in line.split("&&"):
                     words = shlex.split(part, comments=True)
                     if words and Path(words[0]).name == "beamprop":
@@ -80,7 +80,7 @@ def commands():
 @pytest.fixture
 def inputs(scratch):
     """The files that commands read."""
-    for name in ("beam.nc", "comsol_export.txt", "study.toml"):
+    for name in ("beam.nc", "comsol_export.txt", "study.toml", "angles.toml"):
         (scratch / name).touch()
     return scratch
 
@@ -184,7 +184,19 @@ def test_scripts_that_are_called_exist():
 
 @pytest.mark.parametrize(
     "name",
-    ["accuracy", "limit", "statements", "benchmarks", "shares", "steps", "materials", "point", "kills", "sweep"],
+    [
+        "accuracy",
+        "limit",
+        "statements",
+        "benchmarks",
+        "shares",
+        "steps",
+        "materials",
+        "point",
+        "kills",
+        "sweep",
+        "conformance",
+    ],
 )
 def test_tables_are_filled_by_their_name(name, tmp_path):
     """Each table has one place; what is written there is the table, and nothing else of any page changes."""

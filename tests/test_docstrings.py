@@ -14,14 +14,19 @@ import beamprop as bp
 PUBLIC = {name: getattr(bp, name) for name in bp.__all__ if callable(getattr(bp, name))}
 PUBLIC |= {f"fem.{name}": getattr(bp.fem, name) for name in ("field", "plan")}
 PUBLIC |= {
-    f"plot.{name}": getattr(bp.plot, name) for name in ("bloch", "comparison", "field", "scattering", "sweep", "width")
+    f"plot.{name}": getattr(bp.plot, name)
+    for name in ("animate", "bloch", "comparison", "cut", "field", "modes", "scattering", "sweep", "width")
 }
 PUBLIC |= {
     "Fluid.from_speed": bp.Fluid.from_speed,
     "Membrane.drude": bp.Membrane.drude,
     "Membrane.lorentz": bp.Membrane.lorentz,
+    "Profile.from_data": bp.Profile.from_data,
+    "Profile.from_file": bp.Profile.from_file,
     "Slab.from_table": bp.Slab.from_table,
     "Slab.interface": bp.Slab.interface,
+    "Slab.stack": bp.Slab.stack,
+    "Slab.uniform": bp.Slab.uniform,
 }
 
 
@@ -40,6 +45,19 @@ def test_no_public_function_is_left_out():
     assert {f"fem.{name}" for name in bp.fem.__all__ if inspect.isfunction(getattr(bp.fem, name))} <= set(PUBLIC)
     drawn = [name for name, value in vars(bp.plot).items() if inspect.isfunction(value) and not name.startswith("_")]
     assert {f"plot.{name}" for name in drawn} <= set(PUBLIC)
+
+
+def test_no_other_way_to_make_a_record_is_left_out():
+    """Class methods are typed by users, too."""
+    made = {
+        f"{name}.{member}"
+        for name, value in PUBLIC.items()
+        if isinstance(value, type)
+        for member, kind in vars(value).items()
+        if isinstance(kind, classmethod) and not member.startswith("_")
+    }
+    assert len(made) > 7
+    assert made <= set(PUBLIC)
 
 
 @pytest.mark.parametrize("name", [*PUBLIC, "beamprop"])

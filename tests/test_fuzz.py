@@ -26,7 +26,10 @@ def _named():
     public = {name for name in bp.__all__ if callable(getattr(bp, name)) and not name.endswith("Warning")}
     return (
         public
-        | {f"plot.{n}" for n in ("field", "scattering", "bloch", "width", "comparison")}
+        | {
+            f"plot.{n}"
+            for n in ("animate", "bloch", "comparison", "cut", "field", "modes", "scattering", "sweep", "width")
+        }
         | {f"fem.{n}" for n in vars(modules["fem"]) if n in ("field", "plan")}
     )
 

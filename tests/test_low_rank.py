@@ -8,6 +8,9 @@ from beamprop.contour import choose as contour_choice
 from beamprop.contour import error as contour_error
 from beamprop.fields import evaluate, low_rank
 
+#: Planes that skip through cells, as users' may.
+pytestmark = pytest.mark.filterwarnings("ignore:z. steps of:beamprop.HintWarning")
+
 
 @pytest.mark.parametrize("rank", [1, 5, 17])
 def test_rows_of_low_rank_follow_from_a_few(rank):

@@ -217,3 +217,30 @@ def test_names_of_materials():
 def test_wrong_materials(arguments, message):
     with pytest.raises(ValueError, match=message):
         bp.material(**arguments)
+
+
+def test_a_cell_that_is_made_again_is_the_same_cell():
+    """The last one is kept: not beside other arguments, nor in the place of a refusal or a hint."""
+    arguments = {"rho_m": 0.3 + 0.1j, "eta": 0.02, "n_layers": 6}
+    first = bp.lmmd_cell(**arguments)
+    assert bp.lmmd_cell(**arguments) is first
+    for change in (
+        {"eta": 0.03},
+        {"delta_rho": 0.0},
+        {"design_frequency": 2000.0},
+        {"lossless": True},
+        {"background": bp.Fluid(2.0, 2e5)},
+    ):
+        changed = bp.lmmd_cell(**arguments | change)
+        assert changed != first
+        assert bp.lmmd_cell(**arguments) == first
+    for _ in range(2):
+        with pytest.raises(ValueError, match="rho_m, delta_rho: expected a passive medium"):
+            bp.lmmd_cell(rho_m=0.05)
+        with pytest.warns(bp.HintWarning, match="eta: 3 wavelengths a period"):
+            bp.lmmd_cell(eta=3.0)
+    with pytest.warns(bp.HintWarning):
+        soft = bp.Fluid(1.25, 1400.0)
+    for _ in range(2):
+        with pytest.warns(bp.HintWarning, match="bulk_modulus"):
+            bp.lmmd_cell(lossless=True, rho_m=1.0, eta=0.5, background=soft)

@@ -106,6 +106,7 @@ def test_a_huge_strip_is_refused(monkeypatch):
         bp.guided_modes(slab, 2500.0, 1e8, 1e7)
 
 
+@pytest.mark.filterwarnings("ignore:z. steps of:beamprop.HintWarning")
 def test_the_limit_can_be_set(monkeypatch):
     """BEAMPROP_MEMORY takes bytes, or a number with a prefix; anything else is said to be wrong."""
     x = np.linspace(-1, 1, 1000)

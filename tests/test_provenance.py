@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import beamprop as bp
 from beamprop.io import datasets
@@ -87,3 +88,29 @@ def test_a_users_dispersive_function_is_recorded_as_a_table():
     assert between == pytest.approx(bp.scattering(slab, 2050.0, kx=1.0).t.item(), rel=1e-9)  # the function is linear
     with pytest.raises(ValueError, match=r"^frequency:.*2000"):
         bp.scattering(again, 1999.0, kx=1.0)
+
+
+def test_points_do_not_share_what_they_hold():
+    """Datasets of points are copies of one that is kept, and records of a slab are kept: to change one changes no other."""
+    slab, beam = bp.Slab(bp.lmmd_cell(), 20), bp.GaussianBeam(0.096)
+    first = bp.beam_width(slab, beam, 2500.0)
+    want = first.copy(deep=True)
+    first.attrs.clear()
+    first.fwhm_out.attrs["units"] = "furlong"
+    first.fwhm_out.values[()] = 0.0
+    first["frequency"] = 1.0
+    again = bp.beam_width(slab, beam, 2500.0)
+    xr.testing.assert_identical(again, want)
+
+
+def test_a_record_does_not_depend_on_the_one_before():
+    """That of a slab is kept for the next question: not of functions of frequency, nor for another slab."""
+    beam = bp.GaussianBeam(0.096)
+    slabs = [bp.Slab(bp.lmmd_cell(eta=eta), 20) for eta in (1 / 60, 1 / 50)]
+    slabs.append(bp.Slab(bp.Layer(bp.Fluid(lambda f: 2.0 + 500j / f, 1.2e5), 0.01), 3))
+    for f in (2400.0, 2500.0):
+        for slab in slabs:
+            made = bp.beam_width(slab, beam, f)
+            record = json.loads(made.attrs["provenance"])
+            assert record["slab"] == json.loads(json.dumps(datasets.describe(slab, np.array([f]))))
+            assert made.attrs["provenance"] == json.dumps(record)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from conformance import published
 
 import beamprop as bp
 from beamprop.media.air import Air, Water
@@ -11,10 +12,7 @@ from beamprop.media.air import Air, Water
 # --- air and water ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("temperature", "pressure", "humidity", "density", "speed"),
-    [(23.0, 101325.0, 50.0, 1.1860848, 345.86652), (20.0, 80000.0, 65.0, 0.9441589, 344.38267)],
-)
+@pytest.mark.parametrize(("temperature", "pressure", "humidity", "density", "speed"), published.IEC_AIR)
 def test_air_as_iec_61094_2_prints_it(temperature, pressure, humidity, density, speed):
     """Its Table F.1: the speed to the last digit, the density to 1e-6, for it rounds the ratio of molar masses to 0.3780."""
     air = Air(temperature, humidity, pressure)
@@ -36,17 +34,7 @@ def test_sound_speed_in_air_of_an_ideal_gas():
             assert air.sound_speed == pytest.approx(math.sqrt(1.4 * pressure / air.density), rel=2e-3)
 
 
-@pytest.mark.parametrize(
-    ("temperature", "humidity", "db_per_km"),
-    [
-        (10.0, 70.0, (0.1, 0.4, 1.0, 1.9, 3.7, 9.7, 32.8, 117.0)),
-        (20.0, 70.0, (0.1, 0.3, 1.1, 2.8, 5.0, 9.0, 22.9, 76.6)),
-        (30.0, 70.0, (0.1, 0.3, 1.0, 3.1, 7.4, 12.7, 23.1, 59.3)),
-        (15.0, 20.0, (0.3, 0.6, 1.2, 2.7, 8.2, 28.2, 88.8, 202.0)),
-        (15.0, 50.0, (0.1, 0.5, 1.2, 2.2, 4.2, 10.8, 36.2, 129.0)),
-        (15.0, 80.0, (0.1, 0.3, 1.1, 2.4, 4.1, 8.3, 23.7, 82.8)),
-    ],
-)
+@pytest.mark.parametrize(("temperature", "humidity", "db_per_km"), published.ISO_ABSORPTION)
 def test_absorption_of_air_as_iso_9613_2_prints_it(temperature, humidity, db_per_km):
     """Its Table 2, from 63 Hz to 8 kHz: to the last printed digit, at the exact middles of the octaves.
 
@@ -66,50 +54,23 @@ def test_absorption_of_air_as_iso_9613_2_prints_it(temperature, humidity, db_per
 def test_water_against_other_fits():
     """Speeds by Bilaniuk and Wong (1993, 112 points); the densities that Kell's table prints; alpha/f^2 of Pinkerton (1949)."""
     for t in np.linspace(0, 95, 20):
-        other = 1402.38744 + 5.03836171 * t - 5.81172916e-2 * t**2 + 3.34638117e-4 * t**3
-        other += -1.48259672e-6 * t**4 + 3.16585020e-9 * t**5
-        assert Water(t).sound_speed == pytest.approx(other, abs=0.05)
-    for t, density in ((0.0, 999.8395), (4.0, 999.9720), (20.0, 998.2041), (25.0, 997.0449), (40.0, 992.2158)):
+        fit = sum(c * t**n for n, c in enumerate(published.WATER_SPEED))
+        assert Water(t).sound_speed == pytest.approx(fit, abs=0.05)
+    for t, density in published.WATER_DENSITY:
         assert Water(t).density == pytest.approx(density, abs=1e-4)
-    for t, alpha in ((0.0, 56.9e-15), (20.0, 25.3e-15), (40.0, 14.6e-15)):
+    for t, alpha in published.WATER_ABSORPTION:
         k = bp.material("water", temperature=t, attenuation=True).wavenumber(1e6)
         assert k.imag / 1e12 == pytest.approx(alpha, rel=0.02)
 
 
 # --- the table --------------------------------------------------------------------------------------------
 
-#: What the same table prints for thin rods [m/s].
-RODS = {
-    "aluminium": 5000,
-    "beryllium": 12870,
-    "brass": 3480,
-    "copper": 3750,
-    "gold": 2030,
-    "iron": 5200,
-    "lead": 1190,
-    "molybdenum": 5400,
-    "nickel": 4900,
-    "platinum": 2800,
-    "silver": 2680,
-    "steel": 5200,
-    "stainless steel": 5000,
-    "tin": 2730,
-    "titanium": 5080,
-    "tungsten": 4620,
-    "zinc": 3850,
-    "fused silica": 5760,
-    "pyrex": 5170,
-    "acrylic": 1840,
-    "nylon": 1800,
-    "polyethylene": 920,
-}
-
 
 def test_speeds_of_solids_agree_with_those_of_rods():
     """sqrt(Young's modulus / density) from the longitudinal and shear speeds is the rod's speed, printed beside them, to 0.7 %."""
     table = bp.materials()
-    assert {name for name, row in table.items() if row.shear_speed} == set(RODS)
-    for name, rod in RODS.items():
+    assert {name for name, row in table.items() if row.shear_speed} == set(published.RODS)
+    for name, rod in published.RODS.items():
         cl, cs = table[name].sound_speed, table[name].shear_speed
         assert cs * math.sqrt((3 * cl**2 - 4 * cs**2) / (cl**2 - cs**2)) == pytest.approx(rod, rel=0.007), name
 

@@ -68,7 +68,7 @@ BACKWARD = bp.Slab.uniform(bp.Fluid(-0.6 * 1.25, bp.AIR.bulk_modulus), 0.01)
 
 def calls_of_a_field(slab, planes):
     """The calls between rooms of one frequency of one tilted beam in open space."""
-    x, z = np.linspace(-0.5, 0.5, 101), np.linspace(0.0, slab.thickness, planes)
+    x, z = np.linspace(-0.5, 0.5, 101), bp.faces(slab, planes)
     beam = bp.GaussianBeam(0.096, 20.0, z0=-0.1)
     return calls_between_rooms(lambda traced: bp.field(slab, beam, 2500.0, x, z, progress=traced))
 

@@ -288,3 +288,14 @@ def test_records_are_short_and_bounded(monkeypatch):
     monkeypatch.setattr(datasets, "MOST_RECORDS", 1000)
     with pytest.raises(ValueError, match="Unterminated"):
         datasets.unpacked(text)
+
+
+def test_plane_waves_at_several_angles_fit_together_with_the_normal_among_them():
+    slab = bp.Slab(bp.lmmd_cell(), periods=4)
+
+    def question(angle):
+        return bp.scattering(slab, [2000.0, 2500.0], angle=angle)
+
+    ds = bp.sweep(question, {"angle": [0.0, 10.0]}, workers=1, progress=False)
+    assert ds.kx.dims == ("angle", "frequency")
+    assert not ds.kx.values[0].any()

@@ -4,10 +4,12 @@ import errno
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from sweep_stores import ask, empty, in_memory, plane, store_of_small_blocks
 
 import beamprop as bp
@@ -158,3 +160,19 @@ def test_no_clock_decides():
         text = file.read_text(encoding="utf-8")
         assert "time.time(" not in text
         assert "st_mtime" not in text
+
+
+def test_clocks_that_jump_change_no_value(path, monkeypatch):
+    """They leap to and fro, by years, while points are measured, answered and written: blocks may be of any size, values are right."""
+    rng = np.random.default_rng(0)
+    for name in ("time", "monotonic", "perf_counter"):
+        monkeypatch.setattr(time, name, lambda: float(rng.uniform(-1e9, 1e9)))
+    values = np.arange(60.0)
+
+    def square(value):
+        return xr.Dataset({"y": value**2})
+
+    for store in (path, None):
+        ds = bp.sweep(square, {"value": values}, store=store, workers=1, progress=False)
+        assert (ds.status == 1).all()
+        np.testing.assert_array_equal(ds.y, values**2)

@@ -15,6 +15,7 @@ from sweep_stores import VALUES, ask, counted, empty, in_memory, plane, store_of
 
 import beamprop as bp
 from beamprop.study import claims
+from beamprop.study.differences import differences
 
 
 @pytest.fixture
@@ -107,7 +108,7 @@ def test_a_changed_study_is_refused_and_says_what_differs(path, monkeypatch):
         bp.sweep(lambda v: plane(v), {"v": VALUES}, store=path, progress=False)
     with monkeypatch.context() as patch:
         patch.setattr(sweep_stores, "FACTOR", 4.0)
-        with pytest.raises(ValueError, match=r"FACTOR.value: 3.0 there, 4.0 here$"):
+        with pytest.raises(ValueError, match=r"FACTOR: 3.0 there, 4.0 here$"):
             ask(path)
     assert ask(path).identical(before)
 
@@ -138,10 +139,50 @@ def test_closures_and_defaults_belong_to_the_study(path):
     slabs = [bp.Slab(bp.lmmd_cell(eta=eta), 5) for eta in (0.01, 0.02)]
     ask(path, question_of(slabs[0], 0.0))
     ask(path, question_of(bp.Slab(bp.lmmd_cell(eta=0.01), 5), 0.0))
-    with pytest.raises(ValueError, match=r"\n  slab.value: Slab\(.*there, Slab\(.*here$"):
+    with pytest.raises(ValueError, match=r"(?s)\n  slab.segments.1.layers.1.fluid.density: 125.0.* there, 62.5"):
         ask(path, question_of(slabs[1], 0.0))
-    with pytest.raises(ValueError, match=r"\n  defaults.value: "):
+    with pytest.raises(ValueError, match=r"\n  defaults\.1: 0\.0 there, 1\.0 here$"):
         ask(path, question_of(slabs[0], 1.0))
+
+
+def test_a_changed_study_is_told_parameter_by_parameter():
+    """The fields that differ, by the paths of a study file, and the lines of a source; a few of many, and of long texts the place."""
+    wide = "x" * 500
+    there = {
+        "question.value": "Point(description={'question': {'name': 'field', 'rtol': 1e-08}, 'slab': {'periods': 20}}, paths={})",
+        "question.source": "def f(eta):\n    a = 1\n    return a",
+        "w.value": f"'{wide}a{wide}'",
+        "d.value": "{'a': array float64 (3,) b0c45303f7f11848, 'b': (1, 2, 3)}",
+        "o.value": "<no expression 1>",
+        "gone.value": "1",
+    }
+    here = {
+        "question.value": "Point(description={'question': {'name': 'field', 'rtol': 1e-06}, 'slab': {}, 'beam': {'fwhm': 0.1}}, paths={})",
+        "question.source": "def f(eta):\n    a = 2\n    return a",
+        "w.value": f"'{wide}b{wide}'",
+        "d.value": "{'a': array float64 (3,) a68de4b5e96a60c8, 'b': (1, 2, 4)}",
+        "o.value": "<no expression 2>",
+    }
+    lines = differences(there, here)
+    assert lines[:5] == [
+        "question.rtol: 1e-08 there, 1e-06 here",
+        "slab.periods: 20 there, nothing here",
+        "slab: nothing there, {} here",
+        "beam.fwhm: nothing there, 0.1 here",
+        "question.source: a = 1 there, a = 2 here",
+    ]
+    assert "xa" in lines[5]
+    assert "xb" in lines[5]
+    assert len(lines[5]) < 250
+    assert lines[7:] == ["d.b.3: 3 there, 4 here", "and 2 more"]
+    assert differences({"o.value": "<1>", "gone.value": "1"}, {"o.value": "<2>"}) == [
+        "o: <1> there, <2> here",
+        "gone: 1 there, nothing here",
+    ]
+    many = differences({"t.value": str(list(range(100)))}, {"t.value": str(list(range(1, 101)))})
+    assert many[0] == "t.1: 0 there, 1 here"
+    assert many[-1] == "and 92 more"
+    assert differences(there, there) == []
 
 
 # --- claims -------------------------------------------------------------------------------------------------
@@ -150,6 +191,7 @@ def test_closures_and_defaults_belong_to_the_study(path):
 CLAIM = """
 import sys, time
 from pathlib import Path
+from beamprop.study.differences import differences
 from beamprop.study.claims import Claims
 claims = Claims(Path(sys.argv[1]))
 print([claims.take(k) for k in (0, 3)], flush=True)

@@ -9,6 +9,7 @@ import tracemalloc
 import numpy as np
 import oracles
 import pytest
+import tolerance as benchmark
 from scipy.interpolate import CubicSpline
 from scipy.stats import truncnorm
 
@@ -176,3 +177,16 @@ def test_refusals(arguments, message):
 def test_an_index_beyond_the_count():
     with pytest.raises(IndexError, match="index: expected one of 3 copies, got 3"):
         bp.tolerance(SLAB, count=3)[3]
+
+
+def test_the_benchmark_prints_percentiles_of_the_copies(monkeypatch):
+    monkeypatch.setattr(benchmark, "SLAB", SLAB)
+    header, _, fwhm, peak, *_, answered = benchmark.report(7).splitlines()
+    copies = bp.tolerance(SLAB, benchmark.SIGMA, benchmark.SIGMA, count=7)
+    answers = [bp.beam_width(copy, BEAM, 2500.0) for copy in [SLAB, *copies]]
+    for line, name, scale in ((fwhm, "fwhm_out", 100.0), (peak, "peak_out", 1.0)):
+        designed, *values = (scale * answer[name].item() for answer in answers)
+        want = [designed, *np.percentile(values, benchmark.SHARES)]
+        assert np.allclose([float(v) for v in line.split("|")[2:-1]], want, rtol=0, atol=6e-4)
+    assert header.count("%") == len(benchmark.SHARES)
+    assert answered.startswith("7 answered; ")

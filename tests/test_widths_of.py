@@ -69,6 +69,39 @@ def test_any_order_and_several_beams():
     assert np.array_equal(mixed.crossings, straight.crossings[:, order])
 
 
+def test_beams_that_differ_in_their_angle_share_rows(monkeypatch):
+    """They are computed in one go, and each is that of its angle; beams of other kinds are not mixed with them."""
+    from beamprop.profiles import sections
+
+    counts, rows = [], sections.rows
+    monkeypatch.setattr(sections, "rows", lambda s, *rest: counts.append(s.k0.size) or rows(s, *rest))
+    slab, angles = bp.Slab(bp.lmmd_cell(), 45), (0.0, -10.0, 35.0, 60.0)
+    kinds = BEAM, bp.GaussianBeam(0.1, x0=0.3, z0=-0.05), bp.Slits(0.03, 0.1), bp.GaussianBeam(0.3, form="rotated")
+    beams = [beam.at_angle(angle) for angle in angles for beam in kinds]
+    f = np.linspace(2300.0, 2600.0, len(beams))
+    many = widths_of([slab] * len(beams), beams, f)
+    assert sorted(counts) == [1, 1, 1, 1, 4, 4, 4]  # the spectrum of a rotated beam is no shifted one
+    want = np.array([alone(slab, beam, float(at)) for beam, at in zip(beams, f, strict=True)]).T
+    assert np.allclose(np.array(many.row)[:5], want[:5], rtol=1e-8, atol=1e-9)
+    assert np.allclose(many.row.centroid_out, want[5], atol=1e-5)
+
+
+def test_rows_of_a_tilted_source_are_the_source_at_their_angles():
+    from beamprop.sources.rows import at_row, repeated, rows_of, taken
+
+    x = np.linspace(-0.2, 0.2, 41)
+    for source in (BEAM, bp.Slits(0.03, 0.1), bp.Profile(x, np.exp(-((x / 0.05) ** 2)))):
+        beams = [source.at_angle(angle) for angle in (20.0, 0.0, -40.0)]
+        rows = taken(repeated(rows_of(beams), 2), np.array([0, 4, 5]))
+        k0 = np.array([30.0, 40.0, 50.0])
+        k = k0[:, None] * np.linspace(-2, 2, 9) - 0.5j
+        want = np.stack([beam.spectrum(row, at) for beam, row, at in zip(beams, k, k0, strict=True)])
+        assert np.allclose(rows.spectrum(k, k0[:, None]), want, rtol=1e-12, atol=1e-12 * np.abs(want).max())
+        bands = np.array([beam.band(at, 1e-3) for beam, at in zip(beams, k0, strict=True)])
+        assert np.allclose(np.transpose(rows.band(k0, 1e-3)), bands, rtol=1e-12)
+        assert [at_row(rows, i) for i in range(3)] == beams
+
+
 def test_errors_are_those_of_each_point():
     # the second point's error is no better for a first one that is easy, and the first one's no worse
     hard = bp.Slab(bp.lmmd_cell(lossless=True), periods=450)

@@ -275,7 +275,12 @@ WRONG = [
     ("bp.to_grid(field, [0, 1], [0, 1])", "ds: expected a dataset with the dim 'node', got z, x"),
     ("bp.provenance(3)", "ds: expected a Dataset, got 3"),
     ("bp.plot.field(3)", "ds: expected a Dataset, got 3"),
-    ('bp.plot.field(field, quantity="phase")', "quantity: expected 'abs' or 'real', got 'phase'"),
+    (
+        'bp.plot.field(field, quantity="angle")',
+        "quantity: expected 'abs', 'real', 'phase', 'dB' or 'intensity', got 'angle'",
+    ),
+    ("bp.plot.field(field, floor=3)", "floor: expected a level below zero [dB], got 3.0"),
+    ("bp.plot.field(field, width=3)", "width: expected at least 40 mm, got 3: 88 is one column, 180 is two"),
     ("bp.plot.field(field, limit=-1)", "limit: expected a finite number above zero, got -1.0"),
     (
         "bp.plot.width(field)",

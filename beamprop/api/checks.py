@@ -10,7 +10,7 @@ import numpy as np
 from .. import memory, validate
 from ..media.fluids import Fluid
 from ..media.structures import Slab
-from ..sources.base import Beam, moved_to_origin, sin_degrees
+from ..sources.base import Beam, Tilted, moved_to_origin, sin_degrees
 from . import hints
 
 if TYPE_CHECKING:
@@ -65,7 +65,8 @@ class Beams(NamedTuple):
 def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
     """The arguments of a question about beams, or a ValueError that names the wrong one."""
     validate.instance(slab, Slab, "slab")
-    validate.instance(beam, Beam, "beam")
+    if not isinstance(beam, Tilted):  # to look a protocol up takes longer than all other checks
+        validate.instance(beam, Beam, "beam")
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
     hints.warn_of_air(slab, f)

@@ -13,8 +13,9 @@ from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
+from .cell_average import averaged_row
 from .field_question import checked_question, labelled
-from .field_variables import bytes_held, kinds, no_errors, powers, row_of
+from .field_variables import bytes_held, kinds, no_errors, powers
 
 
 def field(
@@ -30,6 +31,7 @@ def field(
     progress: Progress = False,
     *,
     variables: str | Sequence[str] = ("p",),
+    average: str | None = None,
 ) -> xr.Dataset:
     """Total pressure of a beam in front of, inside and behind a slab; particle velocity, intensity and power on request.
 
@@ -64,6 +66,11 @@ def field(
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
 
+    average : "cell", optional
+        Means over one cell about each plane that lies in a row of cells of several layers (near the ends of the row, over the first or the
+        last cell), instead of values at the planes: inside a cell the pressure ripples by its own mean. Planes elsewhere, and
+        power_through, are as without it.
+
     Returns
     -------
     Dataset
@@ -77,6 +84,8 @@ def field(
     -----
     AccuracyWarning
         The estimate is above rtol.
+    HintWarning
+        Many planes skip through the cells of the slab: a map of them shows stripes that are not there. `faces` makes planes that do not.
 
     Raises
     ------
@@ -95,13 +104,13 @@ def field(
     (['v_z', 'intensity_x', 'intensity_z', 'power_through'], 'm/s')
     """
     validate.flag_or_function(progress, "progress")
-    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables)
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
     names = labels.variables
     memory.check_field(question.shape, values=bytes_held(names))
     values: dict[str, np.ndarray] = {name: np.empty(question.shape, kind) for name, kind in kinds(names).items()}
     errors = no_errors(names, question.shape)
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
-        row = row_of(question, i, names)
+        row = averaged_row(question, i, names, average)
         errors.add(i, slice(None), row.fill(slice(None), slice(None), {name: v[i] for name, v in values.items()}))
     if "power_through" in names:
         values["power_through"] = powers(question, errors)

@@ -11,6 +11,7 @@ from .. import validate
 from ..contour import sums
 from ..fields.question import FieldQuestion
 from ..io import datasets
+from ..media.planes import warn_of_stripes
 from ..media.structures import Slab
 from ..sources.base import Beam
 from . import checks, hints
@@ -30,6 +31,7 @@ class Labels(NamedTuple):
     period: float | None
     rtol: float
     variables: tuple[str, ...]
+    average: str | None
 
     @property
     def dims(self) -> tuple[str, ...]:
@@ -53,6 +55,7 @@ def checked_question(
     period: float | None,
     rtol: float,
     variables: Any = ("p",),
+    average: str | None = None,
 ) -> tuple[FieldQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument."""
     beams = checks.beams(slab, beam, frequency, angle, rtol)
@@ -62,6 +65,10 @@ def checked_question(
         raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
     hints.warn_of_width(slab, beam, beams.frequency, xs)
     frequencies, angles = beams.flat
+    if average is not None:
+        validate.word(average, "average", "cell")
+    else:
+        warn_of_stripes(slab, np.atleast_1d(zs), frequencies)
     positions = np.atleast_1d(xs) - beams.origin
     if boundary == "periodic":
         period = _period(period, positions, beams.source, slab, frequencies)
@@ -69,9 +76,8 @@ def checked_question(
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
     axes = beams.axes | {"z": zs, "x": xs}
-    return question, Labels(
-        axes, slab, beam, boundary, period, beams.rtol, checked_variables(variables, slab, np.atleast_1d(zs))
-    )
+    names = checked_variables(variables, slab, np.atleast_1d(zs))
+    return question, Labels(axes, slab, beam, boundary, period, beams.rtol, names, average)
 
 
 def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np.ndarray]) -> xr.Dataset:
@@ -82,7 +88,9 @@ def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np
     if labels.boundary == "open":
         for name, error in errors.items():
             variables["error_estimate" if name == "p" else f"error_estimate_{name}"] = (axes[2], error[pick[:2]])
-    more = {} if labels.variables == ("p",) else {"variables": labels.variables}
+    more: dict[str, Any] = {} if labels.variables == ("p",) else {"variables": labels.variables}
+    if labels.average is not None:
+        more["average"] = labels.average
     ds = datasets.make(
         variables,
         checks.coords(**labels.axes),
@@ -98,6 +106,8 @@ def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np
     ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness}
     if labels.period is not None:
         ds.attrs["period"] = labels.period
+    if labels.average is not None:
+        ds.attrs["average"] = labels.average
     return ds
 
 

@@ -17,8 +17,9 @@ from ..memory import check_field
 from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
+from .cell_average import averaged_row
 from .field_question import checked_question, labelled
-from .field_variables import bytes_held, kinds, no_errors, powers, row_of
+from .field_variables import bytes_held, kinds, no_errors, powers
 
 #: The largest chunk of a file [bytes]: 16 MB, what a reader holds for one value of it, and what compresses at a time.
 CHUNK = 2**24
@@ -41,6 +42,7 @@ def save_field(
     progress: Progress = False,
     *,
     variables: str | Sequence[str] = ("p",),
+    average: str | None = None,
 ) -> xr.Dataset:
     """A field map in a file, written in blocks: as `save` would write the answer of `field`, without ever holding it.
 
@@ -48,7 +50,7 @@ def save_field(
     ----------
     path : path
         Ending in .nc (netCDF) or .zarr; replaced if it exists, once the new one is complete.
-    slab, beam, frequency, x, z, angle, boundary, period, rtol, variables
+    slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average
         As in `field`.
     memory : float, bytes
         Of the largest block of all variables that is held at a time: one row along x at least. What a block is made from takes
@@ -85,7 +87,7 @@ def save_field(
     path = validate.as_path(path)
     validate.flag_or_function(progress, "progress")
     check_target(path)
-    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables)
+    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
     shape, dims, pick, names = question.shape, labels.dims, labels.pick, labels.variables
     values, each = kinds(names), bytes_held(names)
     check_field(shape, in_file=True, values=each)
@@ -103,7 +105,7 @@ def save_field(
         chosen = -1
         for i, angles, planes in watched(progress, work, "blocks"):
             if i != chosen:
-                row, chosen = row_of(question, i, names), i
+                row, chosen = averaged_row(question, i, names, average), i
             # a block at the end may be smaller
             sizes = [len(range(*part.indices(n))) for part, n in zip((angles, planes), shape[1:3], strict=True)]
             out: dict[str, np.ndarray] = {name: np.empty((1, *sizes, shape[3]), kind) for name, kind in values.items()}

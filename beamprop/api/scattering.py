@@ -161,8 +161,8 @@ def _derived_coords(slab: Slab, name: str, k: np.ndarray, frequency: np.ndarray,
     """kx and kx_over_k0 (and the angle, when that was given) as coordinates on the axis."""
     derived: dict[str, Any] = {}
     if name != "kx":
-        fixed = frequency.size == 1 or np.array_equal(k, np.broadcast_to(k[:1], k.shape))
-        derived["kx"] = (dims, k[pick]) if not fixed else (dims[-1:] if pick[1] != 0 else (), k[0][pick[1]])
+        # on the same dimensions at every angle, 0 too, so that datasets of several angles fit together
+        derived["kx"] = (dims, k[pick])
     k0 = slab.before.wavenumber(frequency).real
     if name != "kx_over_k0" and np.all(np.isfinite(k0) & (k0 > 0)):
         derived["kx_over_k0"] = (dims, (k / k0[:, None])[pick])

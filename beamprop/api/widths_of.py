@@ -7,6 +7,7 @@ arrays, a slab a row as elsewhere a frequency a row, and share that time. This i
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Hashable, Iterator, Sequence
 from typing import Any, NamedTuple
 
@@ -19,7 +20,8 @@ from ..media.values import layout
 from ..profiles import sections
 from ..response.fluid_slab import FluidSlab
 from ..response.sampled_slab import sample_all
-from ..sources.base import Beam, moved_to_origin
+from ..sources.base import Beam, Tilted, moved_to_origin
+from ..sources.rows import rows_of, taken
 from . import hints
 
 #: So many rows are computed together: more take no less time each.
@@ -86,26 +88,33 @@ def widths_of(
     rows, met = np.empty((len(sections.Row._fields), f.size)), np.empty((4, f.size), int)
     terms = np.array(uniform_budget(f.size, 0.0))
     for points in _alike(slabs, beams, f):
-        source, origin = moved_to_origin(beams[points[0]])
+        moved, origins = zip(*(moved_to_origin(beams[i]) for i in points), strict=True)
+        source = rows_of(list(moved))
         for part, s in _sampled([slabs[i] for i in points], f[points]):
-            row, crossings, budget = sections.rows(s, source, rtol, air_distance)
+            row, crossings, budget = sections.rows(s, taken(source, part), rtol, air_distance)
             here = points[part]
             rows[:, here], met[:, here], terms[:, here] = row, crossings, budget
-        rows[-1, points] += origin
+        rows[-1, points] += origins
     return Widths(sections.Row(*rows), met, ErrorBudget(*terms))
 
 
 def _alike(slabs: Sequence[Slab], beams: Sequence[Beam], f: np.ndarray) -> Iterator[np.ndarray]:
-    """Indices of points with the same beam and layout of the slab, in blocks."""
+    """Indices of points with the same layout of the slab and the same beam, or beams that differ in their angle alone, in blocks."""
     groups: dict[Hashable, list[int]] = {}
+    upright = functools.cache(_upright)
     for i, (slab, beam) in enumerate(zip(slabs, beams, strict=True)):
         validate.instance(slab, Slab, "slabs")
         hints.warn_of_air(slab, f[i])
-        same = beam if isinstance(beam, Hashable) else id(beam)
+        same = upright(beam) if isinstance(beam, Hashable) else id(beam)
         groups.setdefault((same, layout(slab)), []).append(i)
     for points in groups.values():
         validate.instance(beams[points[0]], Beam, "beams")
         yield from np.array_split(points, -(-len(points) // ROWS_AT_A_TIME))
+
+
+def _upright(beam: Beam) -> Beam:
+    """The beam at normal incidence, where that is the same spectrum but for a shift."""
+    return beam.at_angle(0.0) if isinstance(beam, Tilted) and beam.entire else beam
 
 
 def _sampled(slabs: Sequence[Slab], f: np.ndarray) -> Iterator[tuple[np.ndarray, FluidSlab]]:

@@ -65,9 +65,9 @@ def _warnings_on_lines() -> Iterator[None]:
         try:
             yield
         finally:
-            for w in caught:
-                if not issubclass(w.category, DeprecationWarning):
-                    click.echo(f"warning: {in_options(str(w.message))}", err=True)
+            said = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning)]
+            for message in dict.fromkeys(said):  # a question and its picture may warn of the same
+                click.echo(f"warning: {in_options(message)}", err=True)
 
 
 def check_text(values: float) -> None:
@@ -94,7 +94,8 @@ def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False
 def _write(o: dict[str, Any], ds: xr.Dataset, draw: Callable[[xr.Dataset], Any] | None, saved: bool) -> list[Path]:
     """Write the picture and the dataset; their names. The picture is drawn first: where that fails, nothing is written."""
     output, plot = o["output"], o.get("plot")
-    figure = draw(ds).figure if plot and draw is not None else None
+    drawn = draw(ds) if plot and draw is not None else None
+    figure = getattr(drawn, "flat", [drawn])[0].figure if drawn is not None else None  # panels are an array of Axes
     if output and not saved:
         from ..io.exports import write
 
@@ -105,7 +106,7 @@ def _write(o: dict[str, Any], ds: xr.Dataset, draw: Callable[[xr.Dataset], Any] 
 
         from ..io.storage import write_whole
 
-        write_whole(plot, lambda draft: figure.savefig(draft, dpi=150))
+        write_whole(plot, lambda draft: figure.savefig(draft))
         plt.close(figure)
     return [path for path in (output, plot) if path]
 

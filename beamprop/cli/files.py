@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 @option("--tolerance", kind=AT_LEAST_ZERO, text="Exit with 1 when the relative L2 error is above this.")
 @switch("--rescale", text="Bring b to a by the best complex factor first.")
 @COMSOL
-@output()
+@output("plot_width")
 def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any, **o: Any) -> None:
     """Measure the field in file B against A.
 
@@ -45,11 +45,9 @@ def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any,
         return ds
 
     def draw(ds: xr.Dataset) -> Any:
-        import numpy as np
-
         from .. import plot
 
-        return np.atleast_1d(plot.comparison(ds))[0]
+        return plot.comparison(ds, **({} if o["plot_width"] is None else {"width": o["plot_width"]}))
 
     if o["output"] and any(source.resolve() == o["output"].resolve() for source in (a, b)):
         raise click.UsageError(f"--output: expected a file other than those compared, got {str(o['output'])!r}")

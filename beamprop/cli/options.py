@@ -210,16 +210,23 @@ def launch(shown: str) -> Decorator:
     return option("--z0", kind=LENGTH, text=parameters.BEAM["z0"].text, shown=shown, group="The beam")
 
 
-def output(*, plot: bool = True) -> Decorator:
-    """Where the answer goes."""
-    drawn = option(
-        "--plot",
-        "-p",
-        kind=target(".png", ".pdf"),
-        group="Output",
-        text="Draw it into this .png or .pdf; a file of that name is replaced.",
-    )
-    rest = (
+def quantity(question: str) -> Decorator:
+    """What the picture of a question shows."""
+    shown = parameters.QUANTITIES[question]
+    return option("--quantity", kind=words(*shown), text="What --plot draws.", default=shown[0], shown=shown[0])
+
+
+def output(*picture: str) -> Decorator:
+    """Where the answer goes, and of `parameters.PICTURE` what may be said of its picture."""
+    return all_of(
+        option(
+            "--plot",
+            "-p",
+            kind=target(*parameters.PICTURES),
+            group="Output",
+            text="Draw it into this .png, .svg or .pdf; a file of that name is replaced.",
+        ),
+        *_group("Output", {name: parameters.PICTURE[name] for name in picture}),
         option(
             "--output",
             "-o",
@@ -236,4 +243,3 @@ def output(*, plot: bool = True) -> Decorator:
         switch("--json", "as_json", text="Print the dataset as JSON.", group="Output"),
         switch("--quiet", "-q", text="Print nothing but warnings and what was asked for by --json.", group="Output"),
     )
-    return all_of(*((drawn,) if plot else ()), *rest)

@@ -13,7 +13,24 @@ from ..parameters import is_several, spaced
 from .answer import answer, check_output, check_text, progress, table, units
 from .commands import command
 from .failures import typed
-from .options import BEAM, CELL, LENGTH, NAMES, POSITIVE, REAL, SLAB, axis, given, launch, option, output, switch, words
+from .options import (
+    BEAM,
+    CELL,
+    LENGTH,
+    NAMES,
+    POSITIVE,
+    REAL,
+    SLAB,
+    axis,
+    given,
+    launch,
+    option,
+    output,
+    quantity,
+    switch,
+    words,
+)
+from .pictures import check_axes, drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,12 +59,6 @@ def asking(name: str, o: dict[str, Any]) -> Callable[[], xr.Dataset]:
     return ask
 
 
-def _needs_axis(o: dict[str, Any], *names: str) -> None:
-    """Refuse --plot where each of these axes is one value that was typed."""
-    if o["plot"] and not any(is_several(o[n]) for n in names):
-        raise click.UsageError(f"--plot: expected an axis for {' or '.join(map(typed, names))}, got one value")
-
-
 @command("beam_width", example="beamprop beam_width --angle 0:60:13 --frequency 2500 --plot width.png")
 @SLAB
 @BEAM
@@ -59,23 +70,17 @@ def _needs_axis(o: dict[str, Any], *names: str) -> None:
     text="Of the comparison without the slab [m].",
     shown="two wavelengths",
 )
-@output()
+@output("along", "plot_width")
 def beam_width(**o: Any) -> None:
     """Beam widths by frequency or angle.
 
     The paper's Fig. 6.
     """
-
-    def draw(ds: xr.Dataset) -> Any:
-        from .. import plot
-
-        return plot.width(ds)
-
-    if o["frequency"] is not None:
-        _needs_axis(o, "frequency", "angle")
-    check_output(o, {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]})
+    axes = {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]}
+    check_axes(o, axes)
+    check_output(o, axes)
     names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
-    answer(o, asking("beam_width", o), draw, lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
+    answer(o, asking("beam_width", o), drawing("beam_width", o), lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
 
 
 @command("beam_measures", example="beamprop beam_measures --angle 30 --lossless --periods 20 --window 1")
@@ -84,16 +89,20 @@ def beam_width(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @launch("0")
 @option("--window", kind=LENGTH, text="Half-width of the window [m].", shown="as wide as the beam")
-@output(plot=False)
+@quantity("beam_measures")
+@output("along", "plot_width")
 def beam_measures(**o: Any) -> None:
     """The reflected and transmitted beam, measured.
 
     Widths by three definitions, place, lateral shift, power and divergence.
     """
-
-    check_output(o, {"frequency": o["frequency"], "angle": o["angle"], "side": []})
+    axes = {"frequency": o["frequency"], "angle": o["angle"]}
+    check_axes(o, axes)
+    check_output(o, axes | {"side": []})
     names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
-    answer(o, asking("beam_measures", o), None, lambda ds: f"{units(ds, names)}\n{table(ds, names)}")
+    answer(
+        o, asking("beam_measures", o), drawing("beam_measures", o), lambda ds: f"{units(ds, names)}\n{table(ds, names)}"
+    )
 
 
 @command(example="beamprop field --layer 'density=1000 speed=1480 2mm' --frequency 1MHz --plot beam.png")
@@ -102,12 +111,12 @@ def beam_measures(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @launch("-0.1, 0.73 wavelengths")
 @axis("x", "Lateral positions [m], an axis.", "-0.7:0.7:561, 5.1 wavelengths to both sides")
-@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab")
+@axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab, on faces of thin cells")
 @option(
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )
 @option("--period", kind=LENGTH, text="Of the periodic array [m].")
-@option("--quantity", kind=words("abs", "real"), text="What --plot draws.", default="abs", shown="abs")
+@quantity("field")
 @option(
     "--variables",
     kind=NAMES,
@@ -115,11 +124,14 @@ def beam_measures(**o: Any) -> None:
     shown="p",
 )
 @option(
+    "--average", kind=words("cell"), text="Mean over a cell about each plane, inside of which the pressure ripples."
+)
+@option(
     "--memory",
     kind=POSITIVE,
     text="Write --output block by block, each of at most this many MiB: for maps larger than memory.",
 )
-@output()
+@output("plot_width")
 def field(**o: Any) -> None:
     """The field of a beam: pressure, velocity, intensity.
 
@@ -143,11 +155,6 @@ def field(**o: Any) -> None:
         with parameters.named("output", "path"):
             return save_field(o["output"], **question, memory=o["memory"] * 2**20, progress=progress(o))
 
-    def draw(ds: xr.Dataset) -> Any:
-        from .. import plot
-
-        return plot.field(ds, o["quantity"])
-
     if o["plot"] and (is_several(o["frequency"]) or is_several(o["angle"])):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
     if o["plot"] and any(isinstance(o[n], float) for n in "xz"):
@@ -161,7 +168,7 @@ def field(**o: Any) -> None:
         {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None else o[n] for n in "xz"},
         field=True,
     )
-    answer(o, ask, draw, lambda ds: _field_summary(ds, variables), saved=o["memory"] is not None)
+    answer(o, ask, drawing("field", o), lambda ds: _field_summary(ds, variables), saved=o["memory"] is not None)
 
 
 def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
@@ -190,15 +197,9 @@ LATERAL = ("kx_over_k0", "kx", "angle")
 @axis("kx_over_k0", "An axis.", "0:5:1001")
 @axis("kx", "[rad/m], an axis.")
 @axis("angle", "[degree], an axis.")
-@option(
-    "--quantity",
-    default="transmissivity",
-    kind=words("transmissivity", "reflectivity", "energy_transmission", "absorption"),
-    text="What --plot draws.",
-    shown="transmissivity",
-)
+@quantity("scattering")
 @switch("--log", text="Draw on a logarithmic scale.")
-@output()
+@output("along", "plot_width")
 def scattering(**o: Any) -> None:
     """Reflection and transmission of plane waves.
 
@@ -206,24 +207,19 @@ def scattering(**o: Any) -> None:
     """
     axes = {n: o[n] for n in LATERAL if o[n] is not None} or {"kx_over_k0": spaced(0.0, 5.0, 1001)}
 
-    def draw(ds: xr.Dataset) -> Any:
-        from .. import plot
-
-        return plot.scattering(ds, o["quantity"], log=o["log"])
-
     if len(axes) > 1:
         raise click.UsageError(f"{', '.join(map(typed, axes))}: expected exactly one of them, got {len(axes)}")
-    _needs_axis(o | axes, "frequency", *axes)
+    check_axes(o, {"frequency": o["frequency"]} | axes)
     check_output(o, {"frequency": o["frequency"]} | axes)
     names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
-    answer(o, asking("scattering", o), draw, lambda ds: table(ds, names))
+    answer(o, asking("scattering", o), drawing("scattering", o), lambda ds: table(ds, names))
 
 
 @command(example="beamprop bloch --eta 1/20 --plot contour.png")
 @CELL
 @axis("frequency", "[Hz], an axis.", ONE)
 @axis("kx_over_k0", "An axis.", "-10:10:801")
-@output()
+@output("along", "plot_width")
 def bloch(**o: Any) -> None:
     """Bloch wavenumber: equifrequency contours.
 
@@ -231,19 +227,14 @@ def bloch(**o: Any) -> None:
     """
     kx_over_k0 = spaced(-10.0, 10.0, 801) if o["kx_over_k0"] is None else o["kx_over_k0"]
 
-    def draw(ds: xr.Dataset) -> Any:
-        from .. import plot
-
-        return plot.bloch(ds)
-
     def summary(ds: xr.Dataset) -> str:
         kz = ds["kz_over_k0"]
         return table(ds.assign({"Re kz/k0": kz.real, "Im kz/k0": kz.imag}), ("Re kz/k0", "Im kz/k0"))
 
-    if o["plot"] and not is_several(kx_over_k0):
-        raise click.UsageError("--plot: expected an axis for --kx-over-k0, got one value")
-    check_output(o, {"frequency": o["frequency"], "kx_over_k0": kx_over_k0})
-    answer(o, asking("bloch", o), draw, summary)
+    axes = {"frequency": o["frequency"], "kx_over_k0": kx_over_k0}
+    check_axes(o, axes)
+    check_output(o, axes)
+    answer(o, asking("bloch", o), drawing("bloch", o), summary)
 
 
 @command("guided_modes", example="beamprop guided_modes --lossless --periods 20")
@@ -251,7 +242,7 @@ def bloch(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @option("--kx-over-k0-max", kind=REAL, text="Search up to this Re kx over k0.", default="10", shown="10")
 @option("--strip-over-k0", kind=REAL, text="Search up to this |Im kx| over k0.", default="0.5", shown="0.5")
-@output(plot=False)
+@output("plot_width")
 def guided_modes(**o: Any) -> None:
     """The modes that the slab guides.
 
@@ -265,7 +256,7 @@ def guided_modes(**o: Any) -> None:
         return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
 
     check_output(o, {"frequency": o["frequency"], "mode": []})
-    answer(o, asking("guided_modes", o), None, summary)
+    answer(o, asking("guided_modes", o), drawing("guided_modes", o), summary)
 
 
 COMMANDS = (field, beam_width, beam_measures, scattering, bloch, guided_modes)

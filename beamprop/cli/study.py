@@ -17,6 +17,7 @@ from .answer import answer, progress, table
 from .commands import command
 from .failures import attempt
 from .options import COUNT, SOURCE, Checked, option, switch, words
+from .pictures import drawing
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -104,7 +105,8 @@ def run(**o: Any) -> None:
 
     o |= {name: study.output[key] and Path(study.output[key]) for name, key in (("output", "file"), ("plot", "plot"))}
     with _memory(study.output["memory"]):
-        answer(o, ask, lambda ds: _draw(study, ds), lambda ds: _summary(study, ds))
+        draw = drawing("sweep" if study.axes else study.name, study.output)
+        answer(o, ask, draw, lambda ds: _summary(study, ds))
 
 
 def _way(o: dict[str, Any]) -> dict[str, Any]:
@@ -115,19 +117,6 @@ def _way(o: dict[str, Any]) -> dict[str, Any]:
 
         way["executor"] = Client(o["scheduler"]).get_executor()
     return way
-
-
-def _draw(study: StudyFile, ds: xr.Dataset) -> Any:
-    from .. import plot
-
-    quantity = study.output["quantity"]
-    if study.axes:
-        return plot.sweep(ds, quantity, log=study.output["log"])
-    if study.name == "field":
-        return plot.field(ds, quantity or "abs")
-    if study.name == "scattering":
-        return plot.scattering(ds, quantity or "transmissivity", log=study.output["log"])
-    return plot.width(ds) if study.name == "beam_width" else plot.bloch(ds)
 
 
 def _summary(study: StudyFile, ds: xr.Dataset) -> str:

@@ -80,7 +80,7 @@ TERMS = {
     "angle_interpolation": "the interpolation of angles",
     "band_end": "the end of the band of plane waves",
     "long_phases": "the rounding of long phases",
-    "low_rank": "the low rank of many planes",
+    "low_rank": "planes that are combinations of other planes",
 }
 
 

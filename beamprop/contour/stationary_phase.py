@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..sources.base import Beam
+from ..sources.rows import RowBeam
 
 #: Below this |H| a difference over step H may overflow or lose digits: the smallest normal number, 2e-308, leaves 58 decades for the
 #: step in kx and for H's rounding.
@@ -59,7 +59,7 @@ FAR = 1e4
 ACROSS = 20
 
 
-def landing(k0: Any, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def landing(k0: Any, beam: RowBeam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middle and half-width (F,) of windows that hold the beam after a way `path` (F,) along z.
 
     The beam's strong plane waves span the window.
@@ -86,7 +86,7 @@ def landing(k0: Any, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tu
 RAYS, BRIGHT = 401, 0.25
 
 
-def _far_span(k0: Any, beam: Beam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _far_span(k0: Any, beam: RowBeam, plane: TransferToPlane, path: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The least and the most shift (F,) of the rays that are bright where they land.
 
     Rays part on a long way: |p| of a far field is |S H| / sqrt(2 pi |dx/dkx|), x(kx) being where a plane wave lands. Only part of the

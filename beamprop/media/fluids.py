@@ -59,6 +59,9 @@ class Fluid:
     active: bool = field(default=False, kw_only=True)
 
     def __post_init__(self) -> None:
+        if self._is_plain():
+            warn_of_modulus(self.density, self.bulk_modulus)
+            return
         object.__setattr__(self, "active", validate.flag(self.active, "active"))
         for name in ("density", "bulk_modulus", "density_x"):
             value = getattr(self, name)
@@ -68,6 +71,17 @@ class Fluid:
         self._check(self.active, *(None if callable(v) else v for v in given))
         if self.density_x is None:
             warn_of_modulus(self.density, self.bulk_modulus)
+
+    def _is_plain(self) -> bool:
+        """Whether there is nothing to convert or to refuse: a shorter way to the same, for a slab has many layers."""
+        return (
+            self.active is False
+            and self.density_x is None
+            and type(self.density) is type(self.bulk_modulus) is complex
+            and validate.is_usual(self.density)
+            and validate.is_usual(self.bulk_modulus)
+            and self.density.imag >= 0 >= self.bulk_modulus.imag
+        )
 
     def _check(self, active: bool, density: Any = None, bulk_modulus: Any = None, density_x: Any = None) -> None:
         if density is not None:

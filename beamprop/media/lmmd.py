@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -71,9 +72,26 @@ def lmmd_cell(
     k0 = float(background.wavenumber(design_frequency).real)
     if not (math.isfinite(k0) and k0 > 0):
         raise ValueError(f"background: expected a fluid in which waves propagate, got {background!r}")
+    rho, bulk_modulus = complex(values.rho_z), complex(values.bulk_modulus)
+    made = _cell if n_layers <= MOST_LAYERS and abs(bulk_modulus) >= STIFF else _cell.__wrapped__
+    cell = made(rho_m, delta_rho, n_layers, eta, rho, bulk_modulus, k0)
+    warn_of_eta(eta)
+    return cell
+
+
+#: The last cell is kept, for neighbouring points of a study mostly have the same: if it has no more layers, and none of a modulus [Pa] so
+#: small that there is a hint about it, which is due at every call.
+MOST_LAYERS, STIFF = 1000, 1e5
+
+
+@functools.lru_cache(maxsize=1)
+def _cell(
+    rho_m: complex, delta_rho: float, n_layers: int, eta: float, rho: complex, bulk_modulus: complex, k0: float
+) -> Cell:
+    """The cell of checked numbers, in a background of density `rho`."""
     cosine = np.cos(2 * np.pi * np.arange(n_layers) / n_layers)
     cosine[np.abs(cosine) < 1e-15] = 0.0  # cos(pi/2): exactly zero, as in the formula
-    density = complex(values.rho_z) * (rho_m + (1 / eta + 1j * delta_rho) * cosine)
+    density = rho * (rho_m + (1 / eta + 1j * delta_rho) * cosine)
     if np.any(density.imag < 0):
         raise ValueError(
             "rho_m, delta_rho: expected a passive medium, Im(density) >= 0 in every layer and so Im(rho_m) >= |delta_rho|, "
@@ -82,5 +100,4 @@ def lmmd_cell(
     validate.within(density[density != 0], "rho_m, delta_rho, eta")
     thickness = eta * 2 * np.pi / k0 / n_layers
     validate.within(thickness, "eta")
-    warn_of_eta(eta)
-    return Cell(tuple(Layer(Fluid(rho, complex(values.bulk_modulus)), thickness) for rho in density))
+    return Cell(tuple(Layer(Fluid(layer, bulk_modulus), thickness) for layer in density.tolist()))

@@ -177,7 +177,14 @@ class Slab:
         *,
         background: Fluid | None = None,
     ) -> Slab:
-        """A slab of several (cell, periods) pairs, from the near face on."""
+        """A slab of several (cell, periods) pairs, from the near face on.
+
+        Examples
+        --------
+        >>> fine, coarse = bp.lmmd_cell(eta=1 / 60), bp.lmmd_cell(eta=1 / 30)
+        >>> round(bp.Slab.stack([(fine, 20), (coarse, 10)]).thickness, 6)
+        0.091467
+        """
         try:
             given = [(cell, periods) for cell, periods in segments]
         except (TypeError, ValueError):
@@ -199,7 +206,14 @@ class Slab:
         *,
         background: Fluid | None = None,
     ) -> Slab:
-        """A homogeneous slab of `fluid`, `thickness` metres thick."""
+        """A homogeneous slab of `fluid`, `thickness` metres thick.
+
+        Examples
+        --------
+        >>> oil = bp.Slab.uniform(bp.material("castor oil"), 0.01, background=bp.material("water"))
+        >>> oil.thickness
+        0.01
+        """
         return cls(Layer(fluid, thickness), 1, before, after, background=background)
 
     @classmethod

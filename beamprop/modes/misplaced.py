@@ -11,13 +11,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..response.sampled_slab import SampledSlab, on_the_right
 from .argument_principle import CLUSTER, Box, Dispersion, TooManyModes, outlines, refine, winding, windings, zeros
-from .guided import BESIDE, DispersionOf, Mode, dispersion_of, located, with_directions
+from .guided import BESIDE, LOSS, DispersionOf, Mode, dispersion_of, located, with_directions
 
 #: Rounding may put a mode that lies nearer to the real axis than this, over k0, on either side (lossless layers beside lossy ones).
 ON_AXIS = 1e-10
@@ -295,30 +295,28 @@ def enough_loss(s: SampledSlab, depths: Sequence[float], band: float, start: flo
 
 
 def any_misplaced(s: SampledSlab, depth: np.ndarray, band: np.ndarray) -> np.ndarray:
-    """Whether a contour at `depth` may have misplaced poles, by the argument principle at F frequencies at once: (F,).
+    """Whether a contour at `depth` has misplaced poles, by the argument principle at F frequencies at once: (F,).
 
-    Of a lossless slab every mode below or on the axis is counted, also forward ones.
+    Modes of a lossless slab lie on the axis, and a small loss moves the forward ones above it and the backward ones below. True, too, where
+    counting takes too many values of D.
     """
     if not s.may_guide_backward:
         return np.zeros(depth.shape, bool)
     if s.has_wall:
         return np.ones(depth.shape, bool)
+    on_axis = s.lossless
+    s = s.with_loss(LOSS) if on_axis else s
+    everyone, zero = np.arange(depth.size), np.zeros(depth.shape)
+    start, near = np.minimum(1e-3 * s.k0, 0.1 * s.nearest_branch), np.minimum(s.k0, s.last_branch)
+    lifted = s.last_branch * (1 + BESIDE), zero if on_axis else ON_AXIS * s.k0
 
     def evaluate(kx: np.ndarray, owner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         part = s if owner.size == depth.size and np.array_equal(owner, everyone) else s.take(owner)
         return part.dispersion(kx)
 
-    def count(left: np.ndarray, right: np.ndarray, low: np.ndarray, high: np.ndarray, lifted: Any = None) -> np.ndarray:
-        try:
-            paths = outlines(left, right, low, high, 12, near, lifted)
-            return windings(evaluate, paths, FINEST * float(np.min(s.k0)), MOST_VALUES * depth.size)
-        except TooManyModes:
-            return np.ones(depth.shape, int)
-
-    everyone, near = np.arange(depth.size), np.minimum(s.k0, s.last_branch)
-    zero, start = np.zeros(depth.shape), np.minimum(1e-3 * s.k0, 0.1 * s.nearest_branch)
-    edge = s.last_branch * (1 + BESIDE)
-    if not s.lossless:
-        return count(start, band, -depth, zero, (edge, ON_AXIS * s.k0)) > 0
-    below = count(start, np.minimum(edge, band), -depth, zero) > 0
-    return below | ((band > edge) & (count(edge, np.maximum(band, 1.001 * edge), -depth, depth) > 0))
+    # the outline passes modes at a distance of LOSS, and needs as many nodes as one that is to tell how many there are
+    paths = outlines(start, band, -depth, zero, 48 if on_axis else 12, near, lifted)
+    try:
+        return windings(evaluate, paths, FINEST * float(np.min(s.k0)), MOST_VALUES * depth.size, on_axis) > 0
+    except TooManyModes:
+        return np.ones(depth.shape, bool)

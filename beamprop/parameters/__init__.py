@@ -4,7 +4,7 @@ Options of the command and tables in files share the names, defaults and texts t
 the key: ``ValueError("periods: expected ..., got ...")``. NumPy and the rooms are imported inside the functions, so that the command
 shows its help at once.
 
-values.py: one number, with its unit. tables.py: what a table may hold. models.py: fluids that change with frequency, by the name of a model. media.py: `cell` and `slab`. sources.py: `beam`. scale.py: the
+values.py: one number, with its unit. tables.py: what a table may hold. models.py: fluids that change with frequency, by the name of a model. media.py: `cell` and `slab`. sources.py: `beam`. pictures.py: what is said of a picture. scale.py: the
 axes and lengths that are taken where none are given, by the wavelength.
 """
 
@@ -28,6 +28,9 @@ from .media import layer_of as layer_of
 from .media import of_layers as of_layers
 from .media import slab as slab
 from .media import stack as stack
+from .pictures import PICTURE as PICTURE
+from .pictures import PICTURES as PICTURES
+from .pictures import QUANTITIES as QUANTITIES
 from .scale import Design as Design
 from .scale import design as design
 from .sources import BEAM as BEAM

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from ..media.fluids import Fluid
+    from ..media.structures import Slab
 
 #: Wavelength of the paper's design [m].
 PAPER = 343.0 / 2500.0
@@ -50,10 +51,16 @@ class Design(NamedTuple):
         """Lateral positions about the beam [m]."""
         return spaced(-0.7 * self.scale, 0.7 * self.scale, 561)
 
-    def z(self, launch: float, thickness: float) -> np.ndarray:
-        """Depths from the launch plane to behind a slab of a thickness [m]: a quarter of it, and of a few layers two wavelengths."""
-        behind = max(0.25 * thickness, 2 * self.wavelength if self.layered else 0.0)
-        return spaced(launch, thickness + behind if self.layered else 1.25 * thickness, 561)
+    def z(self, launch: float, slab: Slab) -> np.ndarray:
+        """Depths from the launch plane [m] to behind a slab: a quarter of it, and of a few layers two wavelengths.
+
+        Even, and on faces of the cells where they are finer than such planes resolve.
+        """
+        from ..media.planes import even_on_faces
+
+        behind = max(0.25 * slab.thickness, 2 * self.wavelength if self.layered else 0.0)
+        end = slab.thickness + behind if self.layered else 1.25 * slab.thickness
+        return even_on_faces(slab, spaced(launch, end, 561))
 
 
 def design(table: Mapping[str, Any], before: Fluid, requested: Axis | None = None) -> Design:

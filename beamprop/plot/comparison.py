@@ -8,21 +8,31 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from . import lengths
+from . import maps, style, units
+from .quantities import drawn
 
-_WIDTH = 7.1  # inches, two columns of a journal
+#: From this width on pictures of curves stand side by side; below it one above another [mm].
+BROAD = 130.0
+#: From this height over width on maps stand side by side in a narrow figure, too.
+STEEP = 0.7
+#: Height of a picture of curves, and what ticks, labels and the colour bar add to the height of a map, and to its width [mm].
+CURVES, ABOVE, BESIDE = 42.0, 17.0, 6.0
+#: Heights of a map, and of one of three above one another, which fit on a page [mm].
+HEIGHTS, STACKED = (25.0, 90.0), (20.0, 34.0)
 
 
-def comparison(cmp_ds: xr.Dataset, axes: Any = None) -> Any:
+def comparison(cmp_ds: xr.Dataset, axes: Any = None, *, ax: Any = None, width: float = style.PAGE) -> Any:
     """Draw a comparison: |a|, |b| and |a - b| as maps, and by depth the relative L2 error and the widths' difference.
 
     Parameters
     ----------
     cmp_ds : Dataset
         From `beamprop.compare`, at one frequency and angle.
-    axes : Axes or sequence of Axes, optional
+    axes, ax : Axes or sequence of Axes, optional
         One Axes gets the error by depth, two get the error and the widths' difference, five the three maps before
         them. By default a new figure, with maps if the dataset has the fields at more than one depth.
+    width : float, mm
+        Of a new figure: 180, or 88, with the curves, and maps that are flat, one above another.
 
     Returns
     -------
@@ -38,18 +48,18 @@ def comparison(cmp_ds: xr.Dataset, axes: Any = None) -> Any:
     """
     ds = _checked(cmp_ds)
     fields = [n for n in ("p_a", "p_b", "error") if n in ds]
-    maps = len(fields) == 3 and ds.sizes["z"] > 1 and ds.sizes["x"] > 1
-    if axes is None:
-        axes = _figure(ds, maps)
-    drawn = np.atleast_1d(np.asarray(axes, dtype=object)).ravel()
-    if drawn.size not in (1, 2, 5) or (drawn.size == 5 and not maps):
-        raise ValueError(f"axes: expected 1, 2 or (for a dataset with fields) 5 Axes, got {drawn.size}")
-    if drawn.size == 5:
-        _maps(ds, list(drawn[:3]))
-    _errors(ds, drawn[0] if drawn.size == 1 else drawn[-2])
-    if drawn.size > 1:
-        _widths(ds, drawn[-1])
-    return drawn[0] if drawn.size == 1 else drawn
+    with_maps = len(fields) == 3 and ds.sizes["z"] > 1 and ds.sizes["x"] > 1
+    given = ax if axes is None else axes
+    places = np.atleast_1d(np.asarray(_figure(ds, with_maps, width) if given is None else given, dtype=object)).ravel()
+    if places.size not in (1, 2, 5) or (places.size == 5 and not with_maps):
+        raise ValueError(f"axes: expected 1, 2 or (for a dataset with fields) 5 Axes, got {places.size}")
+    with style.styled(places[0].get_figure(root=True)):
+        if places.size == 5:
+            _maps(ds, list(places[:3]))
+        _errors(ds, places[0] if places.size == 1 else places[-2])
+        if places.size > 1:
+            _widths(ds, places[-1])
+    return places[0] if places.size == 1 else places
 
 
 def _checked(ds: Any) -> xr.Dataset:
@@ -63,18 +73,26 @@ def _checked(ds: Any) -> xr.Dataset:
     return ds
 
 
-def _figure(ds: xr.Dataset, maps: bool) -> Sequence[Any]:
+def _figure(ds: xr.Dataset, with_maps: bool, width: float) -> Sequence[Any]:
     """Axes of a new figure: maps above, curves below."""
-    import matplotlib.pyplot as plt
-
-    if not maps:
-        return plt.subplots(1, 2, figsize=(_WIDTH, 2.6), layout="constrained")[1]
-    height = float(np.clip(_proportion(ds) * _WIDTH / 4, 1.3, 3.6))
-    figure = plt.figure(figsize=(_WIDTH, height + 3.2), layout="constrained")
-    grid = figure.add_gridspec(2, 6, height_ratios=[height + 0.6, 2.2])
-    first = figure.add_subplot(grid[0, :2])
-    further = [figure.add_subplot(grid[0, k : k + 2], sharex=first, sharey=first) for k in (2, 4)]
-    return [first, *further, figure.add_subplot(grid[1, :3]), figure.add_subplot(grid[1, 3:])]
+    below = 1 if width >= BROAD else 2
+    beside = 3 if with_maps and (width >= BROAD or _proportion(ds) >= STEEP) else 1
+    rows = [CURVES] * below
+    if with_maps:
+        each = (width - 12.0) / beside - BESIDE
+        rows = [ABOVE + float(np.clip(_proportion(ds) * each, *(STACKED if beside == 1 else HEIGHTS)))] * (
+            3 // beside
+        ) + rows
+    figure = style.new_figure(width, sum(rows))
+    with style.styled(figure):
+        grid = figure.add_gridspec(len(rows), 6, height_ratios=rows)
+        wide, half = 6 // beside, 3 * below
+        places = [grid[k // beside, wide * (k % beside) : wide * (k % beside) + wide] for k in range(3 * with_maps)]
+        places += [
+            grid[len(rows) - below + k * (below - 1), half * k * (2 - below) : half * k * (2 - below) + half]
+            for k in range(2)
+        ]
+        return [figure.add_subplot(place) for place in places]
 
 
 def _proportion(ds: xr.Dataset) -> float:
@@ -84,39 +102,23 @@ def _proportion(ds: xr.Dataset) -> float:
 
 def _maps(ds: xr.Dataset, axes: Sequence[Any]) -> None:
     """|a| and |b| on one scale, |a - b| on its own; in true proportion unless that makes stripes of them."""
-    unit = ds.p_a.attrs.get("units", "")
-    sizes = [np.abs(ds[n].transpose("x", "z").values) for n in ("p_a", "p_b", "error")]
-    top = float(np.nanpercentile(sizes[0], 99.8)) or 1.0
-    limits = (top, top, float(np.nanmax(sizes[2])) or 1.0)
+    first = drawn((ds.p_a.transpose("x", "z"),), "abs")
     aspect = "equal" if 0.4 < _proportion(ds) < 2.5 else "auto"
-    for ax, size, limit, title in zip(axes, sizes, limits, ("|a|", "|b|", "|a − b|"), strict=True):
-        factor, scaled = _scaled_unit(limit, unit)
-        mesh = ax.pcolormesh(
-            ds.z.values,
-            ds.x.values,
-            size * factor,
-            shading="nearest",
-            cmap="inferno",
-            vmin=0,
-            vmax=limit * factor,
-            rasterized=True,
-        )
+    for ax, name, title in zip(axes, ("p_a", "p_b", "error"), ("|a|", "|b|", "|a − b|"), strict=True):
+        p = ds[name].transpose("x", "z")
+        shown = drawn((p,), "abs", first.high)._replace(name=title)
+        if name == "error":
+            shown = shown._replace(high=shown.most or 1.0)
+        mesh = maps.mesh_of(ax, p, shown)
         ax.set_aspect(aspect)
-        lengths.name_length(ax.xaxis, "z", ds.z.values)
-        bar = ax.figure.colorbar(mesh, cax=ax.inset_axes([0, 1.04, 1, 0.05]), orientation="horizontal")
-        bar.ax.xaxis.set_ticks_position("top")
-        bar.ax.xaxis.set_label_position("top")
-        bar.ax.locator_params(nbins=4)
-        bar.set_label(f"{title} [{scaled}]")
-    lengths.name_length(axes[0].yaxis, "x", ds.x.values)
-    for ax in axes[1:]:
-        ax.tick_params(labelleft=False)
-
-
-def _scaled_unit(limit: float, unit: str) -> tuple[float, str]:
-    """Factor and unit, with a power of ten where numbers up to the limit are small or large."""
-    power = int(np.floor(np.log10(limit)))
-    return (1.0, unit) if -2 < power < 3 else (10.0**-power, rf"$10^{{{power}}}$ {unit}")
+        maps.add_colorbar(ax, mesh, shown, above=True)
+    if axes[0].get_subplotspec() is not None and axes[0].get_subplotspec().rowspan == axes[1].get_subplotspec().rowspan:
+        for ax in axes[1:]:
+            ax.tick_params(labelleft=False)
+            ax.set_ylabel("")
+    else:
+        for ax in axes[:2]:
+            ax.set_xlabel("")
 
 
 def _errors(ds: xr.Dataset, ax: Any) -> None:
@@ -125,16 +127,16 @@ def _errors(ds: xr.Dataset, ax: Any) -> None:
     _curve(ax, ds.z.values, values, "C0")
     overall = float(np.nan_to_num(ds.relative_l2)) if "relative_l2" in ds else 0.0
     if overall > 0:
-        ax.axhline(overall, color="C1", ls="--", lw=1, label=f"overall {overall:.2g}")
-        ax.legend(frameon=False, fontsize="small")
+        ax.axhline(overall, color="C1", ls="--", label=f"overall {overall:.2g}")
+        ax.legend()
     if np.nanmax(values, initial=0.0) > 10 * np.nanmin(values, initial=np.inf):
         ax.set_yscale("log")
     else:
         ax.set_ylim(0, 1.1 * max(np.nanmax(values, initial=0.0), overall) or 1.0)
         ax.ticklabel_format(axis="y", scilimits=(-2, 3), useMathText=True)
     ax.set_ylabel("relative L2 error")
-    lengths.name_length(ax.xaxis, "z", ds.z.values)
-    ax.grid(True, color="0.9", lw=0.5)
+    units.name_axis(ax.xaxis, "z", ds.z.values, "m")
+    ax.grid(True)
 
 
 def _widths(ds: xr.Dataset, ax: Any) -> None:
@@ -145,11 +147,13 @@ def _widths(ds: xr.Dataset, ax: Any) -> None:
     _curve(ax, ds.z.values, values * factor, "C0")
     ax.axhline(0, color="0.5", lw=0.8)
     ax.set_ylabel(f"width of b less a [{unit}]")
-    lengths.name_length(ax.xaxis, "z", ds.z.values)
-    ax.grid(True, color="0.9", lw=0.5)
+    units.name_axis(ax.xaxis, "z", ds.z.values, "m")
+    ax.grid(True)
     if not np.any(np.isfinite(values)):
         ax.text(0.5, 0.5, "half level not reached", transform=ax.transAxes, ha="center", va="center", color="0.4")
 
 
 def _curve(ax: Any, z: np.ndarray, values: np.ndarray, color: str) -> None:
-    ax.plot(z, values, color=color, lw=1.2, marker="o" if z.size < 12 else "", ms=4)
+    ax.plot(z, values, color=color, marker="o" if z.size < 12 else "")
+    if np.ptp(z) > 0:  # where there are no widths, too
+        ax.set_xlim(z.min(), z.max())

@@ -6,7 +6,6 @@ exact sum over the plane waves. A second contour of other parameters gives the e
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -17,9 +16,8 @@ from ..contour import near_normal, paths, sums
 from ..contour.error import MARGIN, uniform_budget
 from ..contour.paths import Contour, Extent, StraightPlan
 from ..contour.stationary_phase import TransferToPlane, landing
-from ..modes import misplaced
-from ..response.sampled_slab import SampledSlab
-from ..sources.base import Beam
+from ..modes.misplaced import any_misplaced
+from ..sources.rows import RowBeam, repeated, taken
 from .fwhm import Evaluate, full_width
 from .routes import Measures, Route, measures_of
 from .windows import EDGE
@@ -82,7 +80,7 @@ def _side_by_side(routes: Sequence[Route]) -> _Rows:
     return _Rows(k0, branch, path, plane if len(routes) > 1 else planes[0], any(route.guided for route in routes))
 
 
-def _both_contours(rows: _Rows, beam: Beam, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves, np.ndarray]:
+def _both_contours(rows: _Rows, beam: RowBeam, plan: StraightPlan) -> tuple[PlaneWaves, PlaneWaves, np.ndarray]:
     """The plane waves at the plane, on a contour and on a second one for the error, and H near kx = 0; one response for all."""
     contours = paths.straight_contour(plan), paths.straight_contour(plan.second_plan())
     k, weight = (np.concatenate([contour[i] for contour in contours], axis=-1) for i in (0, 1))
@@ -96,7 +94,7 @@ def _both_contours(rows: _Rows, beam: Beam, plan: StraightPlan) -> tuple[PlaneWa
     return first, second, h_near
 
 
-def _plan(rows: _Rows, beam: Beam, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
+def _plan(rows: _Rows, beam: RowBeam, middle: np.ndarray, half: np.ndarray, rtol: float) -> StraightPlan:
     lo, hi = beam.band(rows.k0, rtol * 1e-2)  # what is left out of the beam stays far below rtol
     farthest = np.abs(middle - beam.centre) + half
     extent = Extent(rows.k0, rows.branch, np.maximum(-lo, hi), farthest, beam.reach(rtol * 1e-2), rows.path)
@@ -118,7 +116,7 @@ FEW = 8
 
 @np.errstate(over="ignore", invalid="ignore")  # rows that are not finite are not trusted
 def measured_together(
-    routes: Sequence[Route], beam: Beam, rtol: float, level: float
+    routes: Sequence[Route], beam: RowBeam, rtol: float, level: float
 ) -> list[tuple[Measures, np.ndarray]]:
     """Of each route measures at all frequencies, (F,) each, and which of them can be trusted, (F,).
 
@@ -130,26 +128,28 @@ def measured_together(
         return [_nothing(count)] * len(routes)
     if len(routes) > 1 and count > FEW:
         return _parted(routes, beam, rtol, level)
-    rows = _side_by_side(routes)
-    middle, half = landing(rows.k0, beam, rows.plane, rows.path)
-    plan = _plan(rows, beam, middle, half, rtol)
+    rows, each = _side_by_side(routes), repeated(beam, len(routes))
+    middle, half = landing(rows.k0, each, rows.plane, rows.path)
+    plan = _plan(rows, each, middle, half, rtol)
     size = float(np.max(plan.band * plan.window)) / (2 * np.pi)
     many = rows.k0.size * min(size, MOST_OF_A_FREQUENCY) > MOST_TOGETHER
     if len(routes) > 1 and (many or size >= MOST_OF_A_FREQUENCY):
         return _parted(routes, beam, rtol, level)
     if count > 1 and many:
-        halves = [_taken(routes[0], part) for part in np.array_split(np.arange(count), 2)]
-        (low, good_low), (high, good_high) = _parted(halves, beam, rtol, level)
+        (low, good_low), (high, good_high) = (
+            measured_together([_taken(routes[0], part)], taken(beam, part), rtol, level)[0]
+            for part in np.array_split(np.arange(count), 2)
+        )
         return [(measures_of(np.concatenate([low.table, high.table], -1)), np.concatenate([good_low, good_high]))]
     if size >= MOST_OF_A_FREQUENCY:
         return [_nothing(count)]
-    first, second, h_near = _both_contours(rows, beam, plan)
+    first, second, h_near = _both_contours(rows, each, plan)
     measures, good = _measured(first, second, plan, (middle - beam.centre, half), level, rtol)
     table = measures._replace(centroid=measures.centroid + beam.centre).table
     for route, part in zip(routes, np.split(np.arange(rows.k0.size), len(routes)), strict=True):
         if route.guided:
             calm = near_normal.is_calm(h_near[part], max(0.01 * rtol, 1e-12))[:, 0]
-            good[part] &= calm & ~_backward(route.slab, StraightPlan(*(v[part] for v in plan)))
+            good[part] &= calm & ~any_misplaced(route.slab, 1.1 * plan.sigma[part], plan.band[part])
     return [
         (measures_of(v), g) for v, g in zip(np.split(table, len(routes), -1), np.split(good, len(routes)), strict=True)
     ]
@@ -161,7 +161,7 @@ def _nothing(count: int) -> tuple[Measures, np.ndarray]:
     return Measures(unknown, unknown, unknown, unknown, uniform_budget(count, np.nan)), np.zeros(count, bool)
 
 
-def _parted(routes: Sequence[Route], beam: Beam, rtol: float, level: float) -> list[tuple[Measures, np.ndarray]]:
+def _parted(routes: Sequence[Route], beam: RowBeam, rtol: float, level: float) -> list[tuple[Measures, np.ndarray]]:
     """Routes one by one."""
     return [measured for route in routes for measured in measured_together([route], beam, rtol, level)]
 
@@ -169,17 +169,6 @@ def _parted(routes: Sequence[Route], beam: Beam, rtol: float, level: float) -> l
 def _taken(route: Route, rows: np.ndarray) -> Route:
     """The route at the frequencies with those indices."""
     return route._replace(slab=route.slab.take(rows), z=route.z[rows], path=route.path[rows])
-
-
-def _backward(s: SampledSlab, plan: StraightPlan) -> np.ndarray:
-    """Where the contours leave a guided mode on their wrong side, (F,)."""
-    wrong = misplaced.any_misplaced(s, 1.1 * plan.sigma, plan.band)
-    for i in np.flatnonzero(wrong) if s.lossless else []:  # what was counted may be forward
-        slab = s.take(int(i))
-        start = min(1e-3 * slab.k0, 0.1 * slab.nearest_branch)
-        poles = misplaced.misplaced(slab, 1.1 * float(plan.sigma[i]), float(plan.band[i]), start)
-        wrong[i] = bool(poles.poles) or math.isfinite(poles.crossing)
-    return wrong
 
 
 def _sampled(plane_waves: PlaneWaves, plan: StraightPlan) -> tuple[np.ndarray, np.ndarray]:

@@ -15,14 +15,14 @@ import numpy as np
 from ..contour.error import ErrorBudget, uniform_budget
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
-from ..sources.base import Beam
+from ..sources.rows import RowBeam, at_row
 from .fwhm import HALF_LEVEL, centroid, full_width
 from .many_frequencies import measured_together
 from .one_frequency import measured_alone
 from .routes import Measures, Route, far_face, measures_of, without
 
 
-def measure(routes: Sequence[Route], beam: Beam, rtol: float) -> list[Measures]:
+def measure(routes: Sequence[Route], beam: RowBeam, rtol: float) -> list[Measures]:
     """Width, peak and centroid of the profiles across the planes of routes of the same frequencies."""
     level = _half_level(beam)
     return [
@@ -31,21 +31,21 @@ def measure(routes: Sequence[Route], beam: Beam, rtol: float) -> list[Measures]:
     ]
 
 
-def _checked(route: Route, beam: Beam, rtol: float, level: float, measures: Measures, good: np.ndarray) -> Measures:
+def _checked(route: Route, beam: RowBeam, rtol: float, level: float, measures: Measures, good: np.ndarray) -> Measures:
     """The measures, those that cannot be trusted once more by themselves."""
     if good.all():
         return measures
     table = measures.table
-    # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
-    source = beam if route.guided or not is_dataclass(beam) else replace(beam, z0=0.0)
     for i in np.flatnonzero(~good):
-        slab = route.slab.take(int(i))
+        slab, source = route.slab.take(int(i)), at_row(beam, int(i))
+        # a distance without the slab is measured from the launch plane: the way to the slab is no part of it
+        source = source if route.guided or not is_dataclass(source) else replace(source, z0=0.0)
         way = float(route.z[i]), float(route.path[i])
         table[:, i] = measured_alone(slab, source, route.transfer(slab), way, rtol, level, route.guided).table[:, 0]
     return measures_of(table)
 
 
-def _half_level(beam: Beam) -> float:
+def _half_level(beam: RowBeam) -> float:
     return HALF_LEVEL[getattr(beam, "width_of", "pressure")]
 
 
@@ -60,8 +60,8 @@ class Row(NamedTuple):
     centroid_out: np.ndarray
 
 
-def rows(s: SampledSlab, beam: Beam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, ErrorBudget]:
-    """Widths at all frequencies of a slab, at one angle; crossings of the level in the four planes, (4, F); the worst errors, (F,)."""
+def rows(s: SampledSlab, beam: RowBeam, rtol: float, air_distance: float | None) -> tuple[Row, np.ndarray, ErrorBudget]:
+    """Widths at all frequencies of a slab, at an angle or at one in each row; crossings of the level in the four planes, (4, F); the worst errors, (F,)."""
     face, routes = np.full(s.k0.shape, s.thickness), {}
     if not beam.entire:
         routes["launch"] = _free(s, 0.0)
@@ -97,7 +97,7 @@ def _worst(budgets: list[ErrorBudget]) -> ErrorBudget:
     return ErrorBudget(*np.take_along_axis(table, largest[None, None], 0)[0])
 
 
-def _as_launched(s: SampledSlab, beam: Beam) -> Measures:
+def _as_launched(s: SampledSlab, beam: RowBeam) -> Measures:
     """The launch profile itself; |p| does not depend on the frequency."""
     if (known := getattr(beam, "launch_width", None)) is not None:
         width, peak, place, crossings = np.full((s.k0.size, 4), [known, np.nan, np.nan, 2.0]).T

@@ -96,6 +96,13 @@ class Profile(Tilted):
             Names the file, and the line that is no row of finite numbers or may be read in two ways.
         OSError
             The file cannot be opened.
+
+        Examples
+        --------
+        >>> x = np.linspace(-0.3, 0.3, 121)
+        >>> np.savetxt("measured.txt", np.column_stack([x, np.exp(-((x / 0.05) ** 2))]))
+        >>> bp.Profile.from_file("measured.txt", z0=-0.01).x.size
+        121
         """
         path = validate.as_path(path)
         validate.flag(conjugate, "conjugate")
@@ -106,7 +113,27 @@ class Profile(Tilted):
 
     @classmethod
     def from_data(cls, profile: Any, z0: float = 0.0, angle: float = 0.0) -> Profile:
-        """One line of a dataset: a DataArray of complex pressure along x (``ds.p.sel(z=0, method="nearest")``, say)."""
+        """One line of a dataset: a DataArray of complex pressure along x (``ds.p.sel(z=0, method="nearest")``, say).
+
+        Parameters
+        ----------
+        profile : DataArray, Pa
+            Along x [m] alone.
+        z0, angle
+            As in `Profile`.
+
+        Raises
+        ------
+        ValueError
+            It has other dimensions, or its x are not even.
+
+        Examples
+        --------
+        >>> first = bp.Slab(bp.lmmd_cell(), periods=20)
+        >>> ds = bp.field(first, bp.GaussianBeam(0.096), 2500.0, x=np.linspace(-1, 1, 501), z=first.thickness)
+        >>> bp.Profile.from_data(ds.p, z0=-0.1).x.size
+        501
+        """
         if getattr(profile, "dims", None) != ("x",):
             raise ValueError(
                 f"profile: expected a DataArray along x, got {getattr(profile, 'dims', type(profile).__name__)}"

@@ -14,6 +14,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from typing import Any, Protocol
 
@@ -87,6 +88,7 @@ class Processes:
         self._start()
 
     def _start(self) -> None:
+        _start_tracker()
         context = multiprocessing.get_context("spawn")
         self._leash = context.Pipe(duplex=False)
         self._executor = ProcessPoolExecutor(self._workers, context, _begin, (self._leash[0],))
@@ -107,6 +109,16 @@ class Processes:
         for end in self._leash:
             end.close()
         self._executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _start_tracker() -> None:
+    """Start the process that removes the semaphores of killed ones, which it would warn of as leaks: after a kill they are none."""
+    if os.name == "posix":
+        sys.warnoptions.append(quiet := "ignore:resource_tracker")
+        try:
+            resource_tracker.ensure_running()
+        finally:
+            sys.warnoptions.remove(quiet)
 
 
 def _begin(leash: Connection) -> None:

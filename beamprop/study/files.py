@@ -232,7 +232,7 @@ def _targets(study: StudyFile) -> Iterator[Mistake]:
     from ..io.exports import WRITTEN
     from ..io.storage import check_target
 
-    for key, endings in (("file", WRITTEN), ("plot", (".png", ".pdf")), ("store", (".zarr",))):
+    for key, endings in (("file", WRITTEN), ("plot", parameters.PICTURES), ("store", (".zarr",))):
         target = study.output[key]
         if target is None:
             continue

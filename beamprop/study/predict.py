@@ -24,7 +24,8 @@ DRAWN = {
     "field": ({"x", "z"}, "one frequency and one angle, and axes for x and z"),
     "beam_width": ({"frequency", "angle"}, "an axis for frequency or angle"),
     "scattering": ({"frequency", "kx", "kx_over_k0", "angle"}, "an axis for frequency, kx_over_k0, kx or angle"),
-    "bloch": ({"frequency", "kx_over_k0"}, "an axis for kx_over_k0"),
+    "bloch": ({"frequency", "kx_over_k0"}, "an axis for frequency or kx_over_k0"),
+    "beam_measures": ({"frequency", "angle"}, "an axis for frequency or angle"),
 }
 #: Parts of a question's longest axis that are measured, whose difference shows what each value of it takes.
 FEWER, MORE = 2, 8
@@ -45,7 +46,8 @@ class Cost(NamedTuple):
     file: float
     #: Number of blocks, and the largest number of points in one; (1, 1) without a sweep.
     blocks: tuple[int, int]
-    variables: dict[str, tuple[str, ...]]
+    #: Name -> dimension -> size.
+    variables: dict[str, dict[str, int]]
 
     def lines(self) -> list[str]:
         """As a person reads it."""
@@ -94,7 +96,9 @@ def _of_sweep(study: StudyFile) -> Cost:
     largest = min(points.size, math.prod(grid.chunk))
     held = 1.2 * points.size * each if study.output["store"] is None else 2.0 * workers * largest * each
     variables = {
-        name: (*points.axes, *f.dims) for name, f in sample.schema.fields.items() if name not in sample.schema.secondary
+        name: dict(zip((*points.axes, *f.dims), (*points.shape, *f.shape), strict=True))
+        for name, f in sample.schema.fields.items()
+        if name not in sample.schema.secondary
     }
     seconds = sample.seconds * points.size / min(workers, grid.size)
     file = (
@@ -149,12 +153,12 @@ def _with(description: dict[str, Any], name: str, values: list[float]) -> dict[s
     return description | {"question": description["question"] | {name: values}}
 
 
-def _measured(description: dict[str, Any]) -> tuple[float, float, dict[str, tuple[str, ...]]]:
-    """Time and size of an answer, and the dimensions of its variables."""
+def _measured(description: dict[str, Any]) -> tuple[float, float, dict[str, dict[str, int]]]:
+    """Time and size of an answer, and the sizes of its variables."""
     start = time.perf_counter()
     ds = questions.ask(description)
     seconds = time.perf_counter() - start
-    return seconds, float(ds.nbytes), {str(name): tuple(map(str, v.dims)) for name, v in ds.data_vars.items()}
+    return seconds, float(ds.nbytes), {str(n): {str(d): s for d, s in v.sizes.items()} for n, v in ds.data_vars.items()}
 
 
 def before(study: StudyFile) -> Cost | None:
@@ -175,7 +179,7 @@ def before(study: StudyFile) -> Cost | None:
     dims = tuple(name for name in given if name in parameters.AXES and parameters.is_several(given[name])) + tuple(
         defaults
     )
-    if wrong := list(not_drawn(study, {"": dims})):
+    if wrong := list(not_drawn(study, {"": dict.fromkeys(dims, 2)})):
         raise Mistakes(study.path, wrong)
     return None
 
@@ -193,8 +197,8 @@ def _too_large(study: StudyFile, cost: Cost) -> Iterable[Mistake]:
         yield Mistake("output.store" if study.axes else "question", f"{expected}, {got}{advice}")
 
 
-def not_drawn(study: StudyFile, variables: dict[str, tuple[str, ...]]) -> Iterable[Mistake]:
-    """What forbids a picture of variables on these dimensions."""
+def not_drawn(study: StudyFile, variables: dict[str, dict[str, int]]) -> Iterable[Mistake]:
+    """What forbids a picture of variables of these sizes."""
     quantity = study.output["quantity"]
     if study.output["plot"] is None:
         return
@@ -202,15 +206,38 @@ def not_drawn(study: StudyFile, variables: dict[str, tuple[str, ...]]) -> Iterab
         shown = quantity or next(iter(variables))
         if shown not in variables:
             yield Mistake("output.quantity", f"expected {' or '.join(variables)}, got {shown!r}")
-        elif len(variables[shown]) > 2:
-            yield Mistake(
-                "output.plot", f"expected a quantity on one or two axes, got {shown} on {', '.join(variables[shown])}"
-            )
+        else:
+            yield from _sweep_not_drawn(study, variables[shown])
         return
+    if quantity is not None and quantity not in parameters.QUANTITIES.get(study.name, (quantity,)):
+        expected = " or ".join(map(repr, parameters.QUANTITIES[study.name]))
+        yield Mistake("output.quantity", f"expected {expected}, got {quantity!r}")
     if study.name not in DRAWN:
-        yield Mistake("output.plot", f"expected a question that is drawn ({', '.join(DRAWN)}), got {study.name}")
         return
     dims, expected = DRAWN[study.name]
     got = set().union(*variables.values())
+    along = study.output["along"]
     if not got & dims or (study.name == "field" and {"x", "z"} - got) or (study.name == "field" and got - dims):
         yield Mistake("output.plot", f"expected {expected}, got {', '.join(sorted(got)) or 'one value'}")
+    elif along is not None and along not in got:
+        yield Mistake("output.along", f"expected {' or '.join(sorted(got))}, got {along!r}")
+
+
+def _sweep_not_drawn(study: StudyFile, sizes: dict[str, int]) -> Iterable[Mistake]:
+    """What forbids a picture of a variable of a sweep: the plan of the picture itself."""
+    from ..plot import spread
+
+    band = study.output["band"]
+    several = {name: size for name, size in sizes.items() if size > 1}
+    if band is not None and band not in several:
+        yield Mistake("output.band", f"expected {' or '.join(several)}, got {band!r}")
+        return
+    across = {name: size for name, size in several.items() if name != band}
+    coords = {name: (name, list(values)) for name, values in study.axes.items() if name in across}
+    values = np.broadcast_to(0.0, tuple(across.values()))
+    v = datasets.labelled({"shown": (tuple(across), values)}, coords, {})["shown"]
+    try:
+        spread.plan(v, spread.axis_along(v, study.output["along"]))
+    except ValueError as error:
+        name, _, said = str(error).partition(": ")
+        yield Mistake("output.along" if name == "along" else "output.plot", said.partition(": select")[0])

@@ -58,6 +58,7 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         ),
         "period": Parameter(None, parameters.length, "Of the periodic array [m]."),
         "variables": Parameter("p", _names, "p, v_x, v_z, intensity, power_through."),
+        "average": Parameter(None, parameters.as_it_is, "Mean over a cell about each plane.", words=("cell",)),
     },
     "beam_width": _BEAM
     | {"air_distance": Parameter(None, parameters.length, "Of the comparison without the slab [m].")},
@@ -143,7 +144,7 @@ def field_arguments(description: Description) -> dict[str, Any]:
         "beam": parameters.beam({**beam, "z0": z0}, design.scale),
         "frequency": _or(given["frequency"], design.frequency),
         "x": _or(given["x"], design.x),
-        "z": design.z(z0, slab.thickness) if given["z"] is None else given["z"],
+        "z": design.z(z0, slab) if given["z"] is None else given["z"],
     }
 
 

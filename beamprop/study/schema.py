@@ -20,9 +20,13 @@ from .questions import LATERAL, OF_BEAMS, QUESTIONS, TOLERANCE, lateral_of, slab
 #: Where answers go.
 OUTPUT: dict[str, Parameter] = {
     "file": Parameter(None, parameters.text, "The dataset: .nc, .zarr, .mat, .vti, .vtr or .csv."),
-    "plot": Parameter(None, parameters.text, "A picture: .png or .pdf."),
-    "quantity": Parameter(None, parameters.text, "What the picture shows."),
-    "log": Parameter(False, parameters.switch, "On a logarithmic scale."),
+    "plot": Parameter(None, parameters.text, "A picture: .png, .svg or .pdf."),
+    **parameters.PICTURE,
+    "band": Parameter(
+        None,
+        parameters.text,
+        "The axis of random copies: their median, and a band from the 5th to the 95th percentile.",
+    ),
     "store": Parameter(
         None, parameters.text, "A .zarr that a sweep is written to block by block, and goes on in after a kill."
     ),

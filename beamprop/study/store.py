@@ -26,6 +26,7 @@ from .arrays import Spec, chunks_of, specs
 from .axes import Study
 from .blocks import Grid
 from .claims import Claims
+from .differences import differences
 from .fingerprint import parts_of, text_of
 from .work import FAILED, Field, Result, Schema
 
@@ -164,14 +165,8 @@ def _refuse_another(path: Path, there: dict[str, Any], here: dict[str, Any]) -> 
     """Refuse to go on with a store of another study, parameter by parameter."""
     old, new = _flat(there), _flat(here)
     if old != new or list(old) != list(new):
-        changed = [name for name in dict.fromkeys((*old, *new)) if old.get(name) != new.get(name)]
-        lines = [f"{n}: {_short(old.get(n, 'nothing'))} there, {_short(new.get(n, 'nothing'))} here" for n in changed]
-        what = "\n  ".join(lines or ["the order of the axes"])
+        what = "\n  ".join(differences(old, new) or ["the order of the axes"])
         raise ValueError(f"store: expected the study that {str(path)!r} was begun with, got a changed one:\n  {what}")
-
-
-def _short(text: str) -> str:
-    return text if len(text) < 400 else f"{text[:380]}... ({len(text)} characters)"
 
 
 def _about(path: Path) -> dict[str, Any]:

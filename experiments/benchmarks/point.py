@@ -66,7 +66,7 @@ QUESTIONS: dict[str, tuple[Callable[[int], float], int]] = {
     "with loss, normal": (paper, POINTS),
     "with loss, 45 degrees": (partial(paper, angle=45.0), POINTS),
     "with loss, many angles": (lambda number: paper(number, angle=15.0 * (number % 4)), POINTS),
-    "lossless, normal": (partial(paper, lossless=True), POINTS // 4),
+    "lossless, normal": (partial(paper, lossless=True), POINTS),
     "4500 layers, by hand": (partial(behind, layers), 8),
     "4500 layers, a copy": (partial(behind, copies), 8),
 }

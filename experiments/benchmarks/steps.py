@@ -89,7 +89,7 @@ STAGES: dict[str, tuple[Work, dict[str, tuple[str, str]]]] = {
         widths,
         {
             "windows, by stationary phase": ("contour/stationary_phase.py", "landing"),
-            "poles on the wrong side": ("profiles/many_frequencies.py", "_backward"),
+            "poles on the wrong side": ("modes/misplaced.py", "any_misplaced"),
             "contours and their response": ("profiles/many_frequencies.py", "_both_contours"),
             "samples, peak, edges": ("profiles/many_frequencies.py", "_measured"),
         },

@@ -10,6 +10,7 @@ takes all frequencies at once, as a dimension of its own. What `sweep` itself co
 import _one_thread  # noqa: F401  # isort: skip
 
 import argparse
+import os
 import resource
 import tempfile
 import time
@@ -55,9 +56,14 @@ def together(frequencies: np.ndarray) -> Callable[[float, int, float], xr.Datase
 
 def seconds_of(work: Callable[[], object]) -> float:
     """Time of one run."""
-    start = time.perf_counter()
+    return times_of(work)[0]
+
+
+def times_of(work: Callable[[], object]) -> tuple[float, float]:
+    """Time of one run, and processor time, that of the processes which it started and which have ended included."""
+    start, before = time.perf_counter(), sum(os.times()[:4])
     work()
-    return time.perf_counter() - start
+    return time.perf_counter() - start, sum(os.times()[:4]) - before
 
 
 def loop(axes: dict[str, np.ndarray], count: int) -> int:
@@ -85,15 +91,21 @@ def by_hand(axes: dict[str, np.ndarray], count: int) -> int:
         return lazy.compute().size
 
 
+def row(name: str, workers: int, points: int, took: tuple[float, float], store: str = "-") -> str:
+    """A line of the table."""
+    wall, processor = took
+    return f"| {name} | {workers} | {points} | {wall:.1f} | {points / wall:.0f} | {1e3 * processor / points:.2f} ms | {store} |"
+
+
 def study_row(
     name: str, question: Callable, axes: dict[str, np.ndarray], points: int, workers: int
-) -> tuple[str, float]:
-    """A line of the table, and points per second."""
+) -> tuple[str, tuple[float, float]]:
+    """A line of the table, and `times_of` the study."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "study.zarr"
-        took = seconds_of(lambda: bp.sweep(question, axes, store=path, workers=workers, progress=False))
+        took = times_of(lambda: bp.sweep(question, axes, store=path, workers=workers, progress=False))
         size = sum(file.stat().st_size for file in path.rglob("*") if file.is_file())
-    return f"| {name} | {workers} | {points} | {took:.1f} | {points / took:.0f} | {size / 1e6:.1f} MB |", points / took
+    return row(name, workers, points, took, f"{size / 1e6:.1f} MB"), took
 
 
 def own_costs() -> list[str]:
@@ -136,20 +148,26 @@ def report(points: int, count: int) -> str:
     frequencies = axes["frequency"]
     rest = {n: v for n, v in axes.items() if n != "frequency"}
     width(ETA[0], 50, 0.0, 2500.0)
-    lines = ["| way | workers | points | s | points/s | store |", "|---|---|---|---|---|---|"]
+    lines = [
+        "| way | workers | points | s | points/s | processor time a point | store |",
+        "|---|---|---|---|---|---|---|",
+    ]
     done: list[int] = []
     for name, work, workers in (("plain loop", loop, 1), ("xarray and dask by hand", by_hand, 2)):
-        took = seconds_of(lambda work=work: done.append(work(axes, count)))  # type: ignore[misc]
-        lines.append(f"| {name} | {workers} | {done[-1]} | {took:.1f} | {done[-1] / took:.0f} | - |")
-    speeds = {}
+        took = times_of(lambda work=work: done.append(work(axes, count)))  # type: ignore[misc]
+        lines.append(row(name, workers, done[-1], took))
+    times = {}
     for name, question, over in (("sweep", width, axes), ("sweep, frequencies together", together(frequencies), rest)):
         for workers in (1, 2):
-            line, speeds[name, workers] = study_row(name, question, over, size, workers)
+            line, times[name, workers] = study_row(name, question, over, size, workers)
             lines.append(line)
-    ratios = ", ".join(f"{speeds[n, 2] / speeds[n, 1]:.2f} ({n})" for n in dict.fromkeys(name for name, _ in speeds))
+    names = list(dict.fromkeys(name for name, _ in times))
+    ratios = ", ".join(f"{times[n, 1][0] / times[n, 2][0]:.2f} ({n})" for n in names)
+    alone = ", ".join(f"{times[n, 2][1] / 2:.0f} s ({n})" for n in names)
     peak = {who: resource.getrusage(kind).ru_maxrss / 1024 for who, kind in (("main", 0), ("workers", -1))}
     lines += [
         "",
+        f"{size} points on two cores that nobody else uses, by processor time: {alone}",
         f"two workers over one: {ratios}; largest memory {peak['main']:.0f} MB here, {peak['workers']:.0f} MB in a worker",
     ]
     return "\n".join([*lines, *own_costs()])

@@ -1,0 +1,1 @@
+"""What beamprop is held to: published numbers, closed forms, finite elements and other programs, in one table."""

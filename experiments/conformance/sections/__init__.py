@@ -1,0 +1,18 @@
+"""The sections of the page, in its order. A new one is a file with a `SECTION`, and its name here."""
+
+from __future__ import annotations
+
+from . import beams, faces, finite_elements, layered, media, paper, periodic, programs, quadrature, waveguides
+
+SECTIONS = (
+    faces.SECTION,
+    layered.SECTION,
+    periodic.SECTION,
+    waveguides.SECTION,
+    beams.SECTION,
+    media.SECTION,
+    paper.SECTION,
+    quadrature.SECTION,
+    finite_elements.SECTION,
+    programs.SECTION,
+)
