@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .api.field import field
     from .api.fwhm import fwhm
     from .api.guided_modes import guided_modes
+    from .api.rayleigh_angle import rayleigh_angle
     from .api.save_field import save_field
     from .api.scattering import scattering
     from .comparison.fields import compare
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from .media.planes import faces
     from .media.porous import Gas, delany_bazley_miki, johnson_champoux_allard, narrow_slits, narrow_tubes
     from .media.properties import Tabulated
+    from .media.solids import Solid
     from .media.structures import Cell, Layer, Slab
     from .media.tolerance import tolerance
     from .sources.array import Array
@@ -68,6 +70,7 @@ _HOMES = {
     "media.planes": ("faces",),
     "media.properties": ("Tabulated",),
     "media.membranes": ("Membrane",),
+    "media.solids": ("Solid",),
     "media.structures": ("Cell", "Layer", "Slab"),
     "media.tolerance": ("tolerance",),
     "media.lmmd": ("lmmd_cell",),
@@ -86,6 +89,7 @@ _HOMES = {
     "api.field": ("field",),
     "api.fwhm": ("fwhm",),
     "api.guided_modes": ("guided_modes",),
+    "api.rayleigh_angle": ("rayleigh_angle",),
     "api.scattering": ("scattering",),
     "api.save_field": ("save_field",),
     "comparison.fields": ("compare",),
@@ -114,6 +118,7 @@ __all__ = [
     "Profile",
     "Slab",
     "Slits",
+    "Solid",
     "SourcePlane",
     "Tabulated",
     "__version__",
@@ -140,6 +145,7 @@ __all__ = [
     "plot",
     "power_law",
     "provenance",
+    "rayleigh_angle",
     "read_comsol",
     "save",
     "save_field",

@@ -95,7 +95,7 @@ REFUSED = {
 def test_refusals(name, tmp_path):
     """They name `variables`, what it takes, and what came; no file is begun."""
     given, shown = REFUSED[name]
-    said = f"variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got {shown}"
+    said = f"variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got {shown}"
     with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):
         ask(given)
     with pytest.raises(ValueError, match=f"^{re.escape(said)}$"):

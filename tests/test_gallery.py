@@ -38,6 +38,8 @@ STATED = {
     "two_80_mhz",
     "defect_state": "centre_mhz gap_mhz closed_form_gap_mhz periods peak_percent centre_mhz quality most_pairs sharpening "
     "pairs_before impedance_ratio_squared",
+    "schoch": "angle mhz shift displacement_mm null null_at formula_shift error farther error_aluminium",
+    "plate": "mm mhz angle t_percent half_width_mm power_percent peak reflected_percent wide_mm wide_percent",
     "double_wall": "leaf_kg depth_cm resonance_hz formula_hz oblique_hz oblique_angle at_hz double_db single_db half_wave_hz "
     "half_wave_db wool_db",
 }
@@ -236,3 +238,20 @@ def test_the_double_wall_follows_its_closed_form():
     assert r["largest_difference_db"] < 1e-6
     assert r["single_db"] == pytest.approx(r["mass_law_db"], abs=1e-9)
     assert max(r["resonance_db"], r["oblique_db"], r["half_wave_db"]) < 1e-6
+
+
+def test_a_beam_is_displaced_by_a_leaky_rayleigh_wave():
+    """Exact and by the pole alone; Schoch's displacement itself by the free solid's Rayleigh wave is 60.21 wavelengths."""
+    r = result_of("schoch")
+    wavelengths = 1e-3 * r["displacement_mm"] * 3e6 / 1480
+    assert wavelengths == pytest.approx(60.21, rel=2e-3)
+    assert r["shift"] == pytest.approx(r["formula_shift"], rel=3e-3)
+
+
+def test_a_narrow_beam_does_not_pass_a_plate_as_a_plane_wave():
+    """What is not transmitted is reflected, and wide beams approach |t|^2."""
+    r = result_of("plate")
+    assert r["power_percent"] + r["reflected_percent"] == pytest.approx(100, abs=1e-6)
+    shares = r["shares"].transmitted
+    assert bool((shares.diff("half_width") > 0).all())
+    assert float(shares.max()) < 1e-4 * r["t_percent"] ** 2

@@ -5,7 +5,7 @@ import pytest
 from fem_reference import periodic_field
 
 import beamprop as bp
-from beamprop.response.sampled_slab import FluidSlab
+from beamprop.response.fluid_slab import FluidSlab
 
 F, PERIOD = 2500.0, 0.2
 SLITS = bp.Slits(0.011, 0.03, z0=-0.05)

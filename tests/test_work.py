@@ -13,7 +13,8 @@ from beamprop.fields import evaluate
 from beamprop.modes import misplaced
 from beamprop.modes.guided import dispersion_of
 from beamprop.profiles import fwhm, one_frequency
-from beamprop.response.sampled_slab import FluidSlab, sample
+from beamprop.response.fluid_slab import FluidSlab
+from beamprop.response.sampled_slab import sample
 from beamprop.response.transfer_function import through
 
 F = 2500.0

@@ -80,7 +80,7 @@ WRONG = [
         "frequency: expected a 1-D array of finite, strictly increasing positions, got [1, 1]",
     ),
     ("bp.Tabulated([1, 2], [2, 3, 4])", "values: expected one for each of 2 frequencies, got shape (3,)"),
-    ("bp.Layer(1.2, 0.1)", "fluid: expected a Fluid, got 1.2"),
+    ("bp.Layer(1.2, 0.1)", "fluid: expected a Fluid or a Solid, got 1.2"),
     ("bp.Layer(air, 0)", "thickness: expected a finite number above zero, got 0.0"),
     ("bp.Layer(air, -0.1)", "thickness: expected a finite number above zero, got -0.1"),
     ('bp.Layer(air, "2mm")', "thickness: expected a real number, got '2mm'"),
@@ -219,11 +219,11 @@ WRONG = [
     ("bp.field(slab, beam, 2500, x, z, rtol=1)", "rtol: expected a value from 1e-12 to 0.1, got 1"),
     (
         'bp.field(slab, beam, 2500, x, z, variables="q")',
-        "variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got 'q'",
+        "variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got 'q'",
     ),
     (
         "bp.field(slab, beam, 2500, x, z, variables=[])",
-        "variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got []",
+        "variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got []",
     ),
     ('bp.field(slab, beam, 2500, x, z, progress="yes")', "progress: expected True, False or a function, got 'yes'"),
     (

@@ -65,11 +65,11 @@ WRONG = [
     ("field --memory 1 -o a.nc --json", "--memory: expected --output alone, for a map that is written and never held"),
     (
         "field --variables q",
-        "--variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got 'q'",
+        "--variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got 'q'",
     ),
     (
         "field --variables ''",
-        "--variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got ''",
+        "--variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got ''",
     ),
     ("field --variables v_x --plot a.png", "--plot: expected p among --variables, got v_x"),
     (
@@ -310,7 +310,7 @@ WRONG = [
     ),
     (
         "field --variables p, --x 0 --z 0",
-        "--variables: expected some of p, v_x, v_z, intensity_x, intensity_z, power_through, intensity, got ''",
+        "--variables: expected some of p, v_x, v_z, u_x, u_z, s_xz, intensity_x, intensity_z, power_through, intensity, got ''",
     ),
     (
         "field --density 1+1j",

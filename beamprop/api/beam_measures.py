@@ -68,7 +68,8 @@ def beam_measures(
           Goos-Haenchen shift), for the transmitted one the same ray carried straight on to the far face;
         * `peak` [Pa]; `power`: radiated share of the launched power (plane waves that propagate; evanescent and guided
           waves carry none away along z);
-        * `divergence` and `far_angle` [degree]: two standard deviations and mean of the direction of the radiated power;
+        * `divergence` and `far_angle` [degree]: two standard deviations and mean of the direction of the radiated power, in a solid
+          behind by the wavenumber of its S waves;
         * `crossings`: how often |p| crosses the half level inside the window; 2 for a plain beam.
 
     Warns

@@ -11,7 +11,7 @@ from .. import response, validate
 from ..io import datasets
 from ..media.fluids import AIR, Fluid
 from ..media.structures import Cell
-from ..media.values import layer_values
+from ..media.values import period_values
 from . import checks
 
 
@@ -71,7 +71,7 @@ def bloch(
     axis, k = checks.lateral(name, value, lambda g: checks.forward_k0(background, g, "background"), flat, 350.0)
     if np.iscomplexobj(axis):
         raise ValueError(f"{name}: expected real values, got complex ones")
-    layers = layer_values(cell, flat)
+    layers = period_values(cell, flat)
     if np.any(layers.vanishing) and np.any(k != 0):
         raise ValueError(
             "cell: a layer of density 0 blocks every kx other than 0, its Bloch wavenumber has no finite limit"

@@ -63,7 +63,9 @@ def field(
 
         * "v_x", "v_z" [m/s]: particle velocity. v_z is continuous; at an interface v_x, and with it intensity_x, is that of the
           medium behind it.
+        * "u_x", "u_z" [m]: displacement, v = -i w u; "s_xz" [Pa]: shear stress, 0 in fluids. In solids p is -s_zz.
         * "intensity_x", "intensity_z" [W/m^2], both by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
+          In solids, where shear stress has a part in it, it is refused.
         * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.

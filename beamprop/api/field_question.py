@@ -74,7 +74,7 @@ def checked_question(
         raise ValueError(f"period: expected none with boundary='open', got {period!r}")
     question = FieldQuestion(slab, beams.source, frequencies, angles, np.atleast_1d(zs), positions, period, beams.rtol)
     axes = beams.axes | {"z": zs, "x": xs}
-    names = checked_variables(variables)
+    names = checked_variables(variables, slab, np.atleast_1d(zs))
     return question, Labels(axes, slab, beam, boundary, period, beams.rtol, names, average)
 
 

@@ -8,25 +8,31 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import validate
-from ..contour.error import ErrorBudget
+from ..contour.error import ErrorBudget, uniform_budget
 from ..fields.question import FieldQuestion, Prepared, fill, prepare
+from ..media.solid_runs import has_solids, in_solid
+from ..media.structures import Slab
 from ..profiles.plane_power import power_through_planes
 from ..profiles.power import PowerError
 from ..response.sampled_slab import sample
 from ..sources.angles import AngleInterpolation
 
 #: What can be asked for, in the order of a dataset; "intensity" stands for both of its components.
-VARIABLES = ("p", "v_x", "v_z", "intensity_x", "intensity_z", "power_through")
+VARIABLES = ("p", "v_x", "v_z", "u_x", "u_z", "s_xz", "intensity_x", "intensity_z", "power_through")
 INTENSITY = {"intensity_x": "v_x", "intensity_z": "v_z"}
+#: Displacements are made of velocities: v = -i w u.
+DISPLACEMENT = {"u_x": "v_x", "u_z": "v_z"}
+#: What is summed over plane waves.
+SUMMED = ("p", "v_x", "v_z", "s_xz")
 #: What an error is relative to.
 SCALES = (
-    {name: f"the largest |{name}|" for name in ("p", "v_x", "v_z")}
+    {name: f"the largest |{name}|" for name in (*SUMMED, *DISPLACEMENT)}
     | {name: f"{name}: half the largest |p| times the largest |{v}|" for name, v in INTENSITY.items()}
     | {"power_through": "power_through: the incident power"}
 )
 
 
-def checked_variables(variables: Any) -> tuple[str, ...]:
+def checked_variables(variables: Any, slab: Slab, z: np.ndarray) -> tuple[str, ...]:
     """The names of the variables, each once and in the order of `VARIABLES`, or a ValueError."""
     names = [variables] if isinstance(variables, str) else variables
     expected = f"some of {', '.join((*VARIABLES, 'intensity'))}"
@@ -35,7 +41,13 @@ def checked_variables(variables: Any) -> tuple[str, ...]:
     for name in names:
         if not isinstance(name, str) or name not in (*VARIABLES, "intensity"):
             raise validate.refuse("variables", expected, name)
-    return tuple(v for v in VARIABLES if v in names or (v in INTENSITY and "intensity" in names))
+    chosen = tuple(v for v in VARIABLES if v in names or (v in INTENSITY and "intensity" in names))
+    if set(INTENSITY) & set(chosen) and (solid := in_solid(slab, z)).any():
+        raise ValueError(
+            f"variables: expected an intensity at z in fluids (p v lacks the part of the shear stress), got z = {z[solid][0]:g} "
+            "in a solid; power_through is the whole flux there"
+        )
+    return chosen
 
 
 class Row(NamedTuple):
@@ -43,6 +55,7 @@ class Row(NamedTuple):
 
     variables: tuple[str, ...]  #: those on (z, x)
     prepared: dict[str, Prepared]
+    omega: float
 
     def fill(self, planes: slice, angles: slice, out: dict[str, np.ndarray]) -> dict[str, ErrorBudget]:
         """Every variable at planes and angles into out[variable] (A, Z, X); the terms of their errors, (A,) each."""
@@ -51,6 +64,12 @@ class Row(NamedTuple):
         shape = out[self.variables[0]].shape
         sums = {q: out[q] if q in out else np.empty(shape, complex) for q in self.prepared}
         budgets = {q: fill(prepared, planes, angles, sums[q]) for q, prepared in self.prepared.items()}
+        for name in set(self.variables) & set(DISPLACEMENT):
+            np.multiply(sums[DISPLACEMENT[name]], 1j / self.omega, out=out[name])
+            budgets[name] = budgets[DISPLACEMENT[name]]
+        if "s_xz" in self.variables and "s_xz" not in self.prepared:  # fluids alone
+            out["s_xz"][:] = 0
+            budgets["s_xz"] = uniform_budget(shape[0], 0.0)
         for name in set(self.variables) & set(INTENSITY):
             p, v = sums["p"], sums[INTENSITY[name]]
             for at in range(shape[0]):  # (1/2) Re p v*, angle by angle, which takes less memory
@@ -64,7 +83,7 @@ class Row(NamedTuple):
 
 def _summed_for(variable: str) -> tuple[str, ...]:
     """The sums over plane waves that make a variable on (z, x)."""
-    return ("p", INTENSITY[variable]) if variable in INTENSITY else (variable,)
+    return ("p", INTENSITY[variable]) if variable in INTENSITY else (DISPLACEMENT.get(variable, variable),)
 
 
 def row_of(question: FieldQuestion, i: int, variables: tuple[str, ...]) -> Row:
@@ -73,7 +92,9 @@ def row_of(question: FieldQuestion, i: int, variables: tuple[str, ...]) -> Row:
     wanted = {q for v in on_map for q in _summed_for(v)}
     if set(INTENSITY) & set(on_map):
         question = dataclasses.replace(question, rtol=max(question.rtol / 2, 1e-12))
-    return Row(on_map, {q: prepare(question, i, q) for q in ("p", "v_x", "v_z") if q in wanted})
+    wanted -= set() if has_solids(question.slab) else {"s_xz"}
+    prepared = {q: prepare(question, i, q) for q in SUMMED if q in wanted}
+    return Row(on_map, prepared, 2 * np.pi * float(question.frequency[i]))
 
 
 def kinds(variables: tuple[str, ...]) -> dict[str, type]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Any
+import itertools
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,7 +16,9 @@ from ..response.sampled_slab import SampledSlab, sample
 from . import checks
 
 
-def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip_over_k0: float = 0.5) -> xr.Dataset:
+def guided_modes(
+    slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip_over_k0: float = 0.5, *, leaky: bool = False
+) -> xr.Dataset:
     """The modes that a slab guides: zeros of its dispersion function, found without a guess.
 
     The argument principle counts them in the strip k_edge < Re kx < kx_over_k0_max k0, \\|Im kx\\| < strip_over_k0 k0, where
@@ -32,6 +35,9 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     frequency : float or 1-D array, Hz
     kx_over_k0_max, strip_over_k0 : float
         The strip, over the wavenumber of ``slab.before``.
+    leaky : bool
+        Also the modes that radiate into a half-space, from Re kx = k0/1000 on: zeros on the sheet that is reached from the
+        real axis, forward ones above it, backward ones below. Plates of solids have mostly these.
 
     Returns
     -------
@@ -63,7 +69,8 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
     strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
     flat = np.atleast_1d(f)
-    answers = [_modes_at(slab, float(g), highest, strip) for g in flat]
+    search = Search(highest, strip, validate.flag(leaky, "leaky"))
+    answers = [_modes_at(slab, float(g), search) for g in flat]
     most = max(len(modes) for modes, _ in answers)
     kx = np.full((flat.size, most), complex(np.nan, np.nan))
     direction, (residual, error) = np.zeros(kx.shape, int), np.full((2, *kx.shape), np.nan)
@@ -85,40 +92,63 @@ def guided_modes(slab: Slab, frequency: Any, kx_over_k0_max: float = 10.0, strip
     }
     coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
     return datasets.make(
-        variables, coords, "guided_modes", flat, slab=slab, kx_over_k0_max=highest, strip_over_k0=strip
+        variables, coords, "guided_modes", flat, slab=slab, kx_over_k0_max=highest, strip_over_k0=strip, leaky=leaky
     )
+
+
+class Search(NamedTuple):
+    """Where modes are searched for, over k0, and whether leaky ones too."""
+
+    highest: float
+    strip: float
+    leaky: bool
 
 
 #: Modes of a part between two walls are searched for from this Re kx on, over k0: those that decay along x lie at Re kx = 0.
 CLOSED = 1e-3
 
 
-def _modes_at(slab: Slab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
+def _modes_at(slab: Slab, frequency: float, search: Search) -> tuple[list[guided.Mode], int]:
     """The modes of all parts of a slab at one frequency, by Re kx, and how many the argument principle counts."""
     modes, total = [], 0
     for part, times in sample(slab, frequency).parts_between_walls():
-        own, count = _modes_of(part, frequency, highest, strip)
+        own, count = _modes_of(part, frequency, search)
         memory.check("slab", 400.0 * (total + times * count), "the modes of all its parts", "take fewer periods")
         modes += times * own
         total += times * count
     return sorted(modes, key=lambda mode: mode.kx.real), total
 
 
-def _modes_of(s: SampledSlab, frequency: float, highest: float, strip: float) -> tuple[list[guided.Mode], int]:
+def _modes_of(s: SampledSlab, frequency: float, search: Search) -> tuple[list[guided.Mode], int]:
     edge = s.last_branch * (1 + guided.BESIDE) if s.branch_points else CLOSED * s.k0
-    if highest * s.k0 <= edge:
+    if search.highest * s.k0 <= edge:
         raise ValueError(
-            f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {highest}"
+            f"kx_over_k0_max: expected more than {edge / s.k0:.6g}, where guided modes begin, got {search.highest}"
         )
+    spans = [(edge, search.highest * s.k0)]
+    if search.leaky and s.branch_points:  # between branch points, whose cuts stand upright
+        ends = sorted({CLOSED * s.k0, *(b for b in s.real_branches if b > CLOSED * s.k0)})
+        inner = [(a * (1 + guided.BESIDE), b * (1 - guided.BESIDE)) for a, b in itertools.pairwise(ends)]
+        spans = [span for span in inner if span[0] < span[1]] + spans
+    modes: list[guided.Mode] = []
+    total = 0
+    for left, right in spans:
+        own, count = _modes_in(
+            s, frequency, argument_principle.Box(left, right, -search.strip * s.k0, search.strip * s.k0)
+        )
+        modes, total = modes + own, total + count
+    return modes, total
+
+
+def _modes_in(s: SampledSlab, frequency: float, box: argument_principle.Box) -> tuple[list[guided.Mode], int]:
+    """The modes in a box."""
     most = memory.most_values()
     try:
-        modes, total = guided.find_modes(
-            s, argument_principle.Box(edge, highest * s.k0, -strip * s.k0, strip * s.k0), most
-        )
+        modes, total = guided.find_modes(s, box, most)
     except argument_principle.TooManyValues:
         raise ValueError(
             f"kx_over_k0_max: expected a strip that {most:.2g} values of the dispersion function search through, got "
-            f"{highest:g} by {strip:g} k0; search a part of it, by kx_over_k0_max and strip_over_k0"
+            f"{box.right / s.k0:g} by {box.high / s.k0:g} k0; search a part of it, by kx_over_k0_max and strip_over_k0"
         ) from None
     except argument_principle.TooManyModes:
         raise ValueError(

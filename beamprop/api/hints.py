@@ -6,6 +6,7 @@ import numpy as np
 
 from ..media.fluids import Fluid
 from ..media.hints import hint
+from ..media.solids import Solid
 from ..media.structures import UNSTATED, Layer, Slab
 from ..sources.base import Beam
 
@@ -26,7 +27,9 @@ def warn_of_air(slab: Slab, frequency: np.ndarray) -> None:
         )
 
 
-def _is_like_water(fluid: Fluid, frequency: np.ndarray) -> bool:
+def _is_like_water(fluid: Fluid | Solid, frequency: np.ndarray) -> bool:
+    if isinstance(fluid, Solid):
+        return False
     values = fluid.at(np.max(frequency))
     density, speed = abs(complex(values.rho_z)), abs(complex(values.bulk_modulus / values.rho_z)) ** 0.5
     return all(least <= v <= most for v, (least, most) in zip((density, speed), WATER_LIKE, strict=True))

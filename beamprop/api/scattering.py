@@ -12,8 +12,11 @@ import xarray as xr
 from .. import memory, response, validate
 from ..conventions import outgoing_kz
 from ..io import datasets
+from ..media.fluids import FluidValues
+from ..media.solid_runs import has_solids
+from ..media.solids import Solid, SolidHalfSpace
 from ..media.structures import Slab
-from ..media.values import materials, slab_values
+from ..media.values import behind_values, materials, slab_values
 from . import checks, hints
 
 
@@ -50,6 +53,10 @@ def scattering(
         and 1 (the incident wave), `t_error_estimate`, that of t over \\|t\\|, and `error_estimate`, the larger of both. A kx
         that is k0 to the last bit counts as grazing incidence itself.
 
+        With a solid behind `t` is that of p = -s_zz at the far face, `t_p` and `t_s` are the amplitudes there of
+        rho w^2 phi and rho w^2 psi over the incident pressure, where u = grad phi + (-d psi/dz, d psi/dx) is the displacement of P and S
+        waves, and `energy_transmission` is what both carry along z.
+
     Warns
     -----
     AccuracyWarning
@@ -73,8 +80,9 @@ def scattering(
     name, value = checks.single_option(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
-    names = WAVES + (ERRORS if estimate else ())
-    variables = {n: np.empty(k.shape, complex if n in ("r", "t") else float) for n in names}
+    in_solid = IN_SOLID if isinstance(slab.after, Solid) else ()
+    names = ("r", "t", *in_solid, *WAVES, *(ERRORS if estimate else ()))
+    variables = {n: np.empty(k.shape, complex if n in ("r", "t", *IN_SOLID) else float) for n in names}
     for rows, columns in _blocks(k.shape):
         answers = _answer(slab, flat[rows], k[rows, columns], name, estimate)
         for whole, part in zip(variables.values(), answers, strict=True):
@@ -87,8 +95,9 @@ def scattering(
     return datasets.make({n: (dims, v[pick]) for n, v in variables.items()}, coords, "scattering", flat, slab=slab)
 
 
-#: What is told of plane waves, and of its errors.
-WAVES = ("r", "t", "transmissivity", "reflectivity", "energy_transmission", "absorption")
+#: What is told of plane waves beside r and t, of those in a solid behind, and of errors.
+IN_SOLID = ("t_p", "t_s")
+WAVES = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
 ERRORS = ("r_error_estimate", "t_error_estimate", "error_estimate")
 
 
@@ -103,43 +112,48 @@ def _blocks(shape: tuple[int, int]) -> Iterator[tuple[slice, slice]]:
 
 
 def _answer(slab: Slab, frequency: np.ndarray, kx: np.ndarray, name: str, estimate: bool) -> tuple[np.ndarray, ...]:
-    """The variables of `WAVES` at frequencies (F,) and kx (F, n), and with `estimate` those of `ERRORS`: (F, n) each."""
-    before, after = slab.before.at(frequency), slab.after.at(frequency)
+    """r, t, with a solid behind `IN_SOLID`, then `WAVES` and with `estimate` `ERRORS`, at frequencies (F,) and kx (F, n): (F, n) each."""
+    before, after = slab.before.at(frequency), behind_values([slab], frequency)
     omega = 2 * np.pi * frequency[:, None]
-    res, errors = _solved(slab, frequency, omega, kx, estimate)
+    res, errors = _solved(slab, after, frequency, kx, estimate)
     with np.errstate(over="ignore"):
         reflectivity, transmissivity = np.abs(res.r) ** 2, np.abs(res.t) ** 2
     if not (np.all(np.isfinite(reflectivity)) and np.all(np.isfinite(transmissivity))):
         raise ValueError(f"{name}: the response is not finite (a guided mode of a lossless slab, or density 0)")
-    energies = _energies(reflectivity, transmissivity, kx, omega, before, after)
-    return (res.r, res.t, transmissivity, reflectivity, *energies, *errors)
+    energies = _energies(res, reflectivity, kx, omega, (before, after))
+    in_solid = () if res.waves is None else (res.waves[0], 1j * res.waves[1])
+    return (res.r, res.t, *in_solid, transmissivity, reflectivity, *energies, *errors)
 
 
 def _solved(
-    slab: Slab, frequency: np.ndarray, omega: np.ndarray, kx: np.ndarray, estimate: bool
+    slab: Slab, after: FluidValues | SolidHalfSpace, frequency: np.ndarray, kx: np.ndarray, estimate: bool
 ) -> tuple[response.Response | response.Checked, tuple[np.ndarray, ...]]:
     """r and t, and the variables that tell their errors."""
-    values, before, after = slab_values(slab, frequency), slab.before.at(frequency), slab.after.at(frequency)
+    omega = 2 * np.pi * frequency[:, None]
+    values, before = slab_values(slab, frequency), slab.before.at(frequency)
     if not estimate:
         return response.solve(values, before, after, omega, kx), ()
-    rows = [materials(cell, frequency) for cell, _ in slab.segments]
+    rows = [] if has_solids(slab) else [materials(cell, frequency) for cell, _ in slab.segments]
     res = response.solve_checked(values, rows, before, after, omega, kx)
     return res, (res.r_error, res.t_error, np.maximum(res.r_error, res.t_error))
 
 
 def _energies(
-    reflectivity: np.ndarray, transmissivity: np.ndarray, kx: np.ndarray, omega: np.ndarray, before: Any, after: Any
+    res: response.Response | response.Checked,
+    reflectivity: np.ndarray,
+    kx: np.ndarray,
+    omega: np.ndarray,
+    half_spaces: tuple[FluidValues, FluidValues | SolidHalfSpace],
 ) -> tuple[np.ndarray, np.ndarray]:
     """energy_transmission and absorption; nan where the incident wave carries no power of its own."""
-    front, behind = ([v[:, None] for v in fluid] for fluid in (before, after))
-    kz1 = outgoing_kz(kx, omega, *front)
-    alike = all(np.array_equal(a, b) for a, b in zip(front, behind, strict=True))
-    y1 = kz1 / front[0]
-    y2 = (y1 if alike else outgoing_kz(kx, omega, *behind) / behind[0]).real
+    before, after = half_spaces
+    front = [v[:, None] for v in before]
+    y1 = outgoing_kz(kx, omega, *front) / front[0]
+    flux = response.transmitted_flux(before, after, omega, kx, res)
     lossless = np.all([np.imag(v) == 0 for v in front], axis=0)
     carries = lossless & (np.imag(kx) == 0) & (np.abs(y1.imag) <= 1e-12 * np.abs(y1))
-    ratio = np.divide(y2, y1.real, out=np.where(transmissivity == 0, 0.0, 1.0), where=carries & (y1.real != 0))
-    T = np.where(carries, transmissivity * ratio, np.nan)
+    share = np.divide(flux, y1.real, out=np.abs(res.t) ** 2, where=carries & (y1.real != 0))
+    T = np.where(carries, share, np.nan)
     return T, 1 - reflectivity - T
 
 

@@ -18,7 +18,8 @@ from ..contour.error import ErrorBudget, uniform_budget
 from ..media.structures import Slab
 from ..media.values import layout
 from ..profiles import sections
-from ..response.sampled_slab import FluidSlab, sample_all
+from ..response.fluid_slab import FluidSlab
+from ..response.sampled_slab import sample_all
 from ..sources.base import Beam, Tilted, moved_to_origin
 from ..sources.rows import rows_of, taken
 from . import hints

@@ -120,7 +120,7 @@ def beam_measures(**o: Any) -> None:
 @option(
     "--variables",
     kind=NAMES,
-    text="Of the dataset, with commas between: p, v_x, v_z, intensity, power_through.",
+    text="Of the dataset, with commas between: p, v_x, v_z, u_x, u_z, s_xz, intensity, power_through.",
     shown="p",
 )
 @option(

@@ -55,6 +55,7 @@ def orders(slab: Slab, beam: Beam, frequency: float, period: float, count: int) 
     """The orders |m| <= count of the beam repeated every `period`: ``c_m = S(kx_m)/period`` on z = z0."""
     kx = 2 * np.pi / period * np.arange(-count, count + 1)
     before, _ = half_space_kz(slab.before, frequency, kx)
+    assert isinstance(slab.after, Fluid)
     after, _ = half_space_kz(slab.after, frequency, kx)
     k0 = float(slab.before.wavenumber(frequency).real)
     launched = np.asarray(beam.spectrum(kx, k0), dtype=complex) / period
@@ -79,6 +80,7 @@ def ends(strip: Strip, slab: Slab, frequency: float, incident_orders: Orders) ->
     """The boundary operators and the beam's injection."""
     C = transform(strip, incident_orders.kx)
     near = 1j * incident_orders.before / complex(slab.before.at(frequency).rho_z)
+    assert isinstance(slab.after, Fluid)
     far = 1j * incident_orders.after / complex(slab.after.at(frequency).rho_z)
     source = strip.period * C @ (2 * near * incident_orders.incident)
     normal, rho = half_space_kz(slab.before, frequency, np.zeros(1))

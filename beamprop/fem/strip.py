@@ -25,6 +25,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import sparse
 
+from ..media.fluids import Fluid
 from ..media.structures import Cell, Layer, Membrane, Slab
 
 #: Element size along x and z over the wavelength that gives an error of some 1e-4 to 1e-3, by order; experiments/fem_convergence.py
@@ -210,6 +211,8 @@ def _layer_rows(layer: Layer | Membrane, frequency: float, kx: float, order: int
     if isinstance(layer, Membrane):
         mass = complex(layer.at(np.array([frequency]))[0])
         return None if mass == 0 else (Row(0.0, 0j, 1 / mass, 0j), 1)
+    if not isinstance(layer.fluid, Fluid):
+        raise ValueError(f"slab: finite elements take layers of fluid, got {layer.fluid!r}")
     values = layer.fluid.at(frequency)
     rho_z, rho_x, K = (complex(v) for v in values)
     if rho_z == 0 or rho_x == 0:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
+from ..media.solids import Solid
 from ..media.structures import Slab
 from ..sources.base import Beam
 from ..validate import as_count, as_number
@@ -58,6 +59,8 @@ def _check(slab: Any, beam: Any, frequency: Any, period: Any, order: Any, method
     validate.instance(slab, Slab, "slab")
     if slab.thickness == 0:
         raise ValueError("slab: expected a layer to divide into elements, got a slab of thickness 0")
+    if isinstance(slab.after, Solid):
+        raise ValueError(f"slab: finite elements take a fluid behind, got {slab.after!r}")
     validate.instance(beam, Beam, "beam")
     validate.word(method, "method", *solvers.SOLVERS)
     order = as_count(order, "order")

@@ -51,12 +51,12 @@ class Prepared(NamedTuple):
 
 
 def prepare(question: FieldQuestion, i: int, quantity: str = "p") -> Prepared:
-    """Choose the contour of integration for frequency i, of "p", "v_x" or "v_z": each has its own.
+    """Choose the contour of integration for frequency i, of "p", "v_x", "v_z" or "s_xz": each has its own.
 
-    v_x is odd in kx where contours need what is even: its factor kx goes to the source.
+    v_x, as s_xz, is odd in kx where contours need what is even: its factor kx goes to the source.
     """
     s = sample(question.slab, float(question.frequency[i]), backward=True)
-    source: Any = LateralGradient(question.source) if quantity == "v_x" else question.source
+    source: Any = LateralGradient(question.source) if quantity in ("v_x", "s_xz") else question.source
     beams = interpolate_angles(source, question.angle, s.k0, question.rtol * 1e-4)
     transfer = transfer_function.through(s, question.source.z0, quantity)
     if question.period is not None:

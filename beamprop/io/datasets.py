@@ -24,6 +24,7 @@ from ..media import air, attenuation, effective, membranes, porous
 from ..media.fluids import Fluid
 from ..media.membranes import Membrane
 from ..media.properties import Tabulated
+from ..media.solids import Solid, SpeedOfModuli
 from ..media.structures import Cell, Layer, Slab
 from ..media.tolerance import Copy, Tolerance
 from ..sources.array import Array
@@ -43,6 +44,8 @@ _RECORDS: dict[str, type] = {
         Fluid,
         Layer,
         Membrane,
+        Solid,
+        SpeedOfModuli,
         Cell,
         Slab,
         Tolerance,

@@ -28,7 +28,8 @@ def _layers(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, list[FluidVa
     layers = [layer for layer in cell.layers if isinstance(layer, Layer)]
     if len(layers) != len(cell.layers):
         raise ValueError("cell: an effective medium needs a cell of layers only, got a Membrane")
-    return np.array([layer.thickness for layer in layers]), [layer.fluid.at(frequency) for layer in layers]
+    fluids = [validate.instance(layer.fluid, Fluid, "cell: a layer") for layer in layers]
+    return np.array([layer.thickness for layer in layers]), [fluid.at(frequency) for fluid in fluids]
 
 
 def _mean(cell: Cell, frequency: np.ndarray, name: str, inverse: bool = False) -> np.ndarray:

@@ -1,6 +1,7 @@
 """Materials by name: a small table whose every number has a source.
 
-Solids stand here as fluids, by their longitudinal speed: what a beam near the normal sees of a plate. Their shear speed is kept beside it.
+Solids stand here with both speeds: `Solid.from_material` takes them, and `material` the longitudinal one alone, which is what a beam near
+the normal sees of a plate.
 """
 
 from __future__ import annotations
@@ -128,7 +129,7 @@ def material(
 ) -> Fluid:
     """A fluid by the name of its material.
 
-    A solid is a fluid with its longitudinal speed: right at normal incidence, where nothing shears.
+    A solid is a fluid with its longitudinal speed: right at normal incidence, where nothing shears. `Solid.from_material` has both.
 
     Parameters
     ----------
@@ -180,6 +181,17 @@ def material(
     if attenuation is True:
         attenuation = row.attenuation if row.attenuation is not None else _no_attenuation(key)
     return Fluid.from_speed(row.density, row.sound_speed, 0.0 if attenuation is False else attenuation)
+
+
+def solid_numbers(name: str) -> tuple[float, float, float]:
+    """Density, longitudinal and shear speed of a material."""
+    material(name)  # refuses what is no name
+    key = " ".join(name.lower().replace("_", " ").split())
+    row = materials()[ALSO.get(key, key)]
+    if row.shear_speed is None:
+        solids = ", ".join(sorted(n for n, m in TABLE.items() if m.shear_speed is not None))
+        raise validate.refuse("name", f"a material with a shear speed ({solids})", name)
+    return row.density, row.sound_speed, row.shear_speed
 
 
 def _no_attenuation(key: str) -> Attenuation:

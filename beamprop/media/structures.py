@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -11,11 +12,12 @@ from .. import validate
 from ..validate import as_count, as_number
 from .fluids import AIR, Fluid
 from .membranes import Membrane
+from .solids import Solid
 
 
 @dataclass(frozen=True)
 class Layer:
-    """A homogeneous layer: a `Fluid` and its thickness [m].
+    """A homogeneous layer: a `Fluid` or a `Solid`, and its thickness [m].
 
     Examples
     --------
@@ -23,12 +25,18 @@ class Layer:
     Layer(fluid=Fluid(density=1.25, bulk_modulus=147061), thickness=0.01)
     """
 
-    fluid: Fluid
+    fluid: Fluid | Solid
     thickness: float
 
     def __post_init__(self) -> None:
-        validate.instance(self.fluid, Fluid, "fluid")
+        if not isinstance(self.fluid, Fluid | Solid):
+            raise validate.refuse("fluid", "a Fluid or a Solid", self.fluid)
         object.__setattr__(self, "thickness", as_number(self.thickness, "thickness", positive=True, tiny=True))
+
+
+def is_solid(layer: Any) -> bool:
+    """Whether a layer is a solid one."""
+    return isinstance(layer, Layer) and isinstance(layer.fluid, Solid)
 
 
 def _checked_layer(layer: Any) -> Layer | Membrane:
@@ -72,12 +80,20 @@ class Cell:
 UNSTATED = Fluid(AIR.density, AIR.bulk_modulus)
 
 
-def _half_spaces(before: Fluid, after: Fluid, background: Fluid | None) -> tuple[Fluid, Fluid]:
+def _half_spaces(before: Fluid, after: Fluid | Solid, background: Fluid | None) -> tuple[Fluid, Fluid | Solid]:
     """The half-spaces: `background` where they are not given."""
     if background is None:
         return before, after
     validate.instance(background, Fluid, "background")
     return (background if before is UNSTATED else before), (background if after is UNSTATED else after)
+
+
+def _refuse_membrane_between_solids(segments: list[tuple[Cell, int]], after: Fluid | Solid) -> None:
+    layers: list[Any] = [layer for cell, periods in segments for layer in cell.layers * min(periods, 2)]
+    kinds = ("membrane" if isinstance(layer, Membrane) else "solid" if is_solid(layer) else "fluid" for layer in layers)
+    row = [kind for kind, _ in itertools.groupby([*kinds, "solid" if isinstance(after, Solid) else "fluid"])]
+    if any(row[i : i + 3] == ["solid", "membrane", "solid"] for i in range(len(row))):
+        raise ValueError("layers: expected a membrane beside a fluid, got one between two solids, which has no meaning")
 
 
 @dataclass(frozen=True, init=False)
@@ -89,7 +105,8 @@ class Slab:
     cell : Cell, Layer, Membrane, or a sequence of layers and membranes
         A membrane alone is a slab too, of thickness 0.
     periods : int
-    before, after : Fluid
+    before : Fluid
+    after : Fluid or Solid
         The half-spaces in front and behind; air, unless `background` is given.
     background : Fluid, optional
         Both half-spaces at once; `before` or `after` beside it is that of its own side.
@@ -112,14 +129,14 @@ class Slab:
 
     segments: tuple[tuple[Cell, int], ...]
     before: Fluid
-    after: Fluid
+    after: Fluid | Solid
 
     def __init__(
         self,
         cell: Cell | Layer | Membrane | Iterable[Layer | Membrane],
         periods: int = 1,
         before: Fluid = UNSTATED,
-        after: Fluid = UNSTATED,
+        after: Fluid | Solid = UNSTATED,
         *,
         background: Fluid | None = None,
     ) -> None:
@@ -129,8 +146,14 @@ class Slab:
             cell = Cell(cell)  # type: ignore[arg-type]
         self._fill(((cell, as_count(periods, "periods")),), *_half_spaces(before, after, background))
 
-    def _fill(self, segments: tuple[tuple[Cell, int], ...], before: Fluid, after: Fluid) -> None:
+    def _fill(self, segments: tuple[tuple[Cell, int], ...], before: Fluid, after: Fluid | Solid) -> None:
+        if isinstance(before, Solid):
+            raise ValueError(
+                f"before: expected a Fluid (waves come from a fluid; a solid may lie behind), got {before!r}"
+            )
         for name, fluid in (("before", before), ("after", after)):
+            if name == "after" and isinstance(fluid, Solid):
+                continue
             validate.instance(fluid, Fluid, name)
             if not callable(fluid.density) and fluid.density == 0:
                 raise ValueError(f"{name}: expected a half-space of a density other than zero, got {fluid!r}")
@@ -140,6 +163,7 @@ class Slab:
                 merged[-1] = (cell, merged[-1][1] + periods)
             else:
                 merged.append((cell, periods))
+        _refuse_membrane_between_solids(merged, after)
         object.__setattr__(self, "segments", tuple(merged))
         object.__setattr__(self, "before", before)
         object.__setattr__(self, "after", after)
@@ -149,7 +173,7 @@ class Slab:
         cls,
         segments: Iterable[tuple[Cell, int]],
         before: Fluid = UNSTATED,
-        after: Fluid = UNSTATED,
+        after: Fluid | Solid = UNSTATED,
         *,
         background: Fluid | None = None,
     ) -> Slab:
@@ -178,7 +202,7 @@ class Slab:
         fluid: Fluid,
         thickness: float,
         before: Fluid = UNSTATED,
-        after: Fluid = UNSTATED,
+        after: Fluid | Solid = UNSTATED,
         *,
         background: Fluid | None = None,
     ) -> Slab:
@@ -193,7 +217,7 @@ class Slab:
         return cls(Layer(fluid, thickness), 1, before, after, background=background)
 
     @classmethod
-    def interface(cls, before: Fluid = UNSTATED, after: Fluid = UNSTATED) -> Slab:
+    def interface(cls, before: Fluid = UNSTATED, after: Fluid | Solid = UNSTATED) -> Slab:
         """The face between two half-spaces, without a layer: a slab of thickness 0.
 
         Examples
@@ -211,7 +235,7 @@ class Slab:
         table: Any,
         periods: int = 1,
         before: Fluid = UNSTATED,
-        after: Fluid = UNSTATED,
+        after: Fluid | Solid = UNSTATED,
         *,
         background: Fluid | None = None,
     ) -> Slab:
@@ -221,7 +245,7 @@ class Slab:
         ----------
         table : path, or DataFrame
             A header and a row a layer. Columns: `thickness`, and `material` (a name that `material` knows), or `density` with
-            `sound_speed` or `bulk_modulus`, and perhaps `attenuation` (Np/m; with `reference_frequency` and `exponent` a
+            `sound_speed` or `bulk_modulus`, and perhaps `shear_speed` (a solid) or `attenuation` (Np/m; with `reference_frequency` and `exponent` a
             power law); or `areal_density` alone, a membrane. SI units, or the one that the header names: ``thickness_mm``,
             ``density (g/cm3)``, ``attenuation [dB/cm]``. Empty cells are left out; so are lines of the file that begin with #.
         periods : int

@@ -13,6 +13,7 @@ from .. import validate
 from .attenuation import NEPERS_IN_DB_PER_CM, Attenuation, PowerLaw
 from .fluids import Fluid
 from .materials import material
+from .solids import Solid
 from .structures import Layer, Membrane
 
 #: What a column may hold, and its units by the value of each in SI units; the first is meant where the header names none.
@@ -20,6 +21,7 @@ COLUMNS: dict[str, dict[str, float]] = {
     "thickness": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
     "density": {"kg_m3": 1.0, "g_cm3": 1e3},
     "sound_speed": {"m_s": 1.0, "km_s": 1e3},
+    "shear_speed": {"m_s": 1.0, "km_s": 1e3},
     "bulk_modulus": {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9},
     "attenuation": {
         "np_m": 1.0,
@@ -121,7 +123,7 @@ def _layer(row: Row) -> Layer | Membrane:
     return Layer(_fluid(row), _real(row, "thickness"))
 
 
-def _fluid(row: Row) -> Fluid:
+def _fluid(row: Row) -> Fluid | Solid:
     given = set(row)
     if "material" in given:
         _only(given, "material", "thickness", "attenuation", "reference_frequency", "exponent")
@@ -132,6 +134,9 @@ def _fluid(row: Row) -> Fluid:
     if "density" not in given or ("sound_speed" in given) == ("bulk_modulus" in given):
         came = ", ".join(name for name in row if name != "thickness") or "none of them"
         raise ValueError(f"density: expected material, or density and one of sound_speed and bulk_modulus, got {came}")
+    if "shear_speed" in given:
+        _only(given, "shear_speed", "thickness", "density", "sound_speed")
+        return Solid(*(_number(row, name) for name in ("density", "sound_speed", "shear_speed")))
     if "bulk_modulus" in given:
         _only(given, "bulk_modulus", "thickness", "density")
         return Fluid(_number(row, "density"), _number(row, "bulk_modulus"))

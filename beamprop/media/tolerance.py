@@ -14,6 +14,7 @@ from .. import memory, validate
 from .fluids import Fluid
 from .membranes import Membrane
 from .properties import Property
+from .solids import Solid
 from .structures import Cell, Layer, Slab
 
 #: Standard deviations at which errors are cut off: 6e-5 of a Gaussian's lie beyond, and without them its standard deviation is 0.9995.
@@ -151,7 +152,10 @@ def _changed(layer: Layer | Membrane, thickness: float, density: float) -> Layer
     if isinstance(layer, Membrane):
         return replace(layer, areal_density=_times(layer.areal_density, density))
     fluid = layer.fluid
-    if density != 1:
+    if isinstance(fluid, Solid):  # its moduli stay, as a fluid's does
+        speeds = (_times(v, density**-0.5) for v in (fluid.longitudinal_speed, fluid.shear_speed))
+        fluid = Solid(_times(fluid.density, density), *speeds, active=fluid.active)
+    elif density != 1:
         along_x = None if fluid.density_x is None else _times(fluid.density_x, density)
         fluid = Fluid(_times(fluid.density, density), fluid.bulk_modulus, along_x, active=fluid.active)
     return Layer(fluid, layer.thickness * thickness)

@@ -11,14 +11,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .fluids import Fluid, FluidValues
-from .structures import Cell, Layer, Membrane, Slab
+from .solid_runs import Part, has_solids, items_of, parts, run_values, solid_half_space
+from .solids import Solid, SolidBlock, SolidHalfSpace
+from .structures import Cell, Layer, Membrane, Slab, is_solid
 
 
 class LayerValues(NamedTuple):
     """The layers of a cell at F frequencies: arrays (N, F), and the thickness (N,), or (N, F) of a cell for each frequency.
 
     A layer's matrix needs no more than mass ``rho_z d``, compliance ``d / K`` and mobility ``d / rho_x``; a
-    membrane has mass alone. Rows are divided in proportion where a layer is cut.
+    membrane has mass alone. Rows are divided in proportion where a layer is cut. A run of solids in contact is one row without
+    mass, compliance and mobility, and stands in `solids` by its number.
     """
 
     mass: np.ndarray
@@ -26,6 +29,7 @@ class LayerValues(NamedTuple):
     mobility: np.ndarray
     thickness: np.ndarray
     vanishing: np.ndarray  # (N, F): isotropic density 0, solved as the limit of small density
+    solids: tuple[tuple[int, tuple[SolidBlock, ...]], ...] = ()
 
 
 class SegmentValues(NamedTuple):
@@ -82,6 +86,7 @@ def _numbers(layer: Layer | Membrane) -> tuple[Any, Any, Any]:
         row = (layer.areal_density, np.inf, 1.0)
     else:
         fluid = layer.fluid
+        assert isinstance(fluid, Fluid)  # solids have rows of their own
         row = (fluid.density, fluid.density if fluid.density_x is None else fluid.density_x, fluid.bulk_modulus)
     return _DISPERSIVE if callable(row[0]) or callable(row[1]) or callable(row[2]) else row
 
@@ -107,10 +112,44 @@ def layer_values(cell: Cell | Sequence[Cell], frequency: np.ndarray) -> LayerVal
 
 
 def slab_values(slab: Slab | Sequence[Slab], frequency: np.ndarray) -> list[SegmentValues]:
-    """Segments, from the near face on, at frequencies [Hz] (1-D): of a slab, or of a slab of the same `layout` for each frequency."""
+    """Segments, from the near face on, at frequencies [Hz] (1-D): of a slab, or of a slab of the same `layout` for each frequency.
+
+    Where solids of two periods touch, the periods begin elsewhere in the cell: every run of solids lies within one segment.
+    """
     slabs = [slab] if isinstance(slab, Slab) else slab
+    if has_solids(slabs[0]):
+        return [_with_solids(part, frequency) for part in parts(slabs[0])]
     segments = zip(*(slab.segments for slab in slabs), strict=True)
     return [SegmentValues(layer_values([cell for cell, _ in pairs], frequency), pairs[0][1]) for pairs in segments]
+
+
+def period_values(cell: Cell, frequency: np.ndarray) -> LayerValues:
+    """One period of an infinite stack; with solids it begins with a fluid, so that no run of solids is cut."""
+    solid = [is_solid(layer) for layer in cell.layers]
+    if not any(solid):
+        return layer_values(cell, frequency)
+    if all(solid):
+        raise ValueError("cell: expected a fluid beside the solids of a cell: solids alone carry two Bloch waves")
+    first = solid.index(False)
+    turned = items_of(cell.layers[first:] + cell.layers[:first])
+    return _with_solids(Part(turned, 1), frequency).layers
+
+
+def _with_solids(part: Part, frequency: np.ndarray) -> SegmentValues:
+    """A segment whose runs of solids are rows of their own."""
+    fluids = [j for j, item in enumerate(part.items) if not isinstance(item, tuple)]
+    runs = {j: run_values(item, frequency) for j, item in enumerate(part.items) if isinstance(item, tuple)}
+    shape = len(part.items), frequency.size
+    rows = [np.zeros(shape, complex) for _ in range(3)]
+    vanishing = np.zeros(shape, bool)
+    thickness = np.array([sum(b.thickness for b in runs[j]) if j in runs else 0.0 for j in range(shape[0])])
+    if fluids:
+        of_fluids: Any = layer_values(Cell(tuple(part.items[j] for j in fluids)), frequency)  # type: ignore[misc]
+        for whole, row in zip((*rows, thickness, vanishing), of_fluids[:5], strict=True):
+            whole[fluids] = row
+    mass, compliance, mobility = rows
+    values = LayerValues(mass, compliance, mobility, thickness, vanishing, tuple(runs.items()))
+    return SegmentValues(values, part.periods)
 
 
 def half_space_values(fluids: Sequence[Fluid], frequency: np.ndarray) -> FluidValues:
@@ -121,6 +160,18 @@ def half_space_values(fluids: Sequence[Fluid], frequency: np.ndarray) -> FluidVa
     return FluidValues(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
-def layout(slab: Slab) -> tuple[tuple[int, tuple[bool, ...]], ...]:
-    """What slabs have in common whose values fit into the same arrays: for each segment its periods, and which layers are membranes."""
+def behind_values(slabs: Sequence[Slab], frequency: np.ndarray) -> FluidValues | SolidHalfSpace:
+    """The half-space behind, of a slab, or of a slab for each frequency (slabs with solids: equal ones)."""
+    if isinstance(slabs[0].after, Solid):
+        return solid_half_space(slabs[0], frequency)
+    return half_space_values([slab.after for slab in slabs], frequency)  # type: ignore[misc]
+
+
+def layout(slab: Slab) -> tuple[Any, ...]:
+    """What slabs have in common whose values fit into the same arrays: for each segment its periods, and which layers are membranes.
+
+    Slabs with solids have it in common with equal ones only.
+    """
+    if has_solids(slab):
+        return (*slab.segments, slab.after)
     return tuple((n, tuple(isinstance(layer, Membrane) for layer in cell.layers)) for cell, n in slab.segments)

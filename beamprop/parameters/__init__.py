@@ -22,7 +22,6 @@ from .media import LMMD as LMMD
 from .media import PART as PART
 from .media import SLAB as SLAB
 from .media import cell as cell
-from .media import described as described
 from .media import fluid_of as fluid_of
 from .media import layer as layer
 from .media import layer_of as layer_of
@@ -53,6 +52,7 @@ from .values import size as size
 from .values import spaced as spaced
 from .values import switch as switch
 from .values import text as text
+from .words import described as described
 
 #: What a question may be asked along, and the units that its numbers may have.
 AXES: dict[str, Mapping[str, int]] = {

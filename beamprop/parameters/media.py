@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from .models import MODEL, of_model
 from .tables import Parameter, apart, named, read
-from .values import LENGTHS, as_it_is, count, frequency, length, number, real, switch
+from .values import as_it_is, count, frequency, length, number, real, switch
+from .words import described, refused
 
 if TYPE_CHECKING:
     from ..media.fluids import Fluid
@@ -29,11 +30,9 @@ def attenuation(value: Any, name: str) -> float:
     split = re.fullmatch(r"(.*?)([A-Za-z]+/[a-z]+)", value.strip()) if isinstance(value, str) else None
     factor = COLUMNS["attenuation"].get(split[2].lower().replace("/", "_")) if split else None
     expected = "a number [Np/m], or such as 0.5dB/cm"
-    return (
-        real(value, name, expected=expected)
-        if not split or factor is None
-        else factor * real(split[1], name, expected=expected)
-    )
+    if not split or factor is None:
+        return real(value, name, expected=expected)
+    return factor * real(split[1], name, expected=expected)
 
 
 # --- what tables hold: the paper's parameters are the defaults ----------------------------------------------
@@ -52,8 +51,8 @@ LAYERS: dict[str, Parameter] = {
     "layer": Parameter(
         None,
         as_it_is,
-        "A layer of your own, from the near face on; may be repeated: 'water 2mm', 'density=1000 speed=1480 2mm', or "
-        "'areal_density=0.3' for a membrane.",
+        "A layer of your own, from the near face on; may be repeated: 'water 2mm', 'solid steel 1mm' (with shear), "
+        "'density=1000 speed=1480 2mm', or 'areal_density=0.3' for a membrane.",
     ),
     "layers": Parameter(
         None, as_it_is, "All layers of your own: a CSV file with a row each and columns such as thickness_mm, material."
@@ -73,7 +72,9 @@ SLAB: dict[str, Parameter] = CELL | {
         "The layers themselves, an effective medium (bare: without the interface term), or background only.",
         words=("exact", "lmmd-emt", "lmmd-emt-bare", "standard-emt", "none"),
     ),
-    "after": Parameter(None, as_it_is, "Material of the half-space behind, if it differs."),
+    "after": Parameter(
+        None, as_it_is, "Material of the half-space behind, if it differs: water, or 'solid steel' (with shear)."
+    ),
     "after_density": Parameter(None, number, "Of the half-space behind, if it differs [kg/m3]."),
     "after_speed": Parameter(None, number, "Of the half-space behind, if it differs [m/s]."),
 }
@@ -82,6 +83,7 @@ LAYER: dict[str, Parameter] = {
     "material": Parameter(None, as_it_is, "A name."),
     "density": Parameter(None, number, "[kg/m3]"),
     "sound_speed": Parameter(None, number, "[m/s]"),
+    "shear_speed": Parameter(None, number, "Of a solid [m/s]."),
     "bulk_modulus": Parameter(None, number, "[Pa]"),
     "attenuation": Parameter(None, attenuation, "Beside a speed [Np/m], or 0.5dB/cm; the same at every frequency."),
     "density_x": Parameter(None, number, "Along the layer, where it differs [kg/m3]."),
@@ -90,10 +92,11 @@ LAYER: dict[str, Parameter] = {
     "thickness": Parameter(None, length, "[m]"),
 }
 #: What a half-space is described by, in place of a material's name.
-FLUID: dict[str, Parameter] = {name: p for name, p in LAYER.items() if name not in ("areal_density", "thickness")}
+FLUID: dict[str, Parameter] = {
+    name: p for name, p in LAYER.items() if name not in ("areal_density", "thickness", "shear_speed")
+}
 #: What each part of a stack is described by.
 PART: dict[str, Parameter] = LMMD | LAYERS | {"periods": Parameter(1, count, "Periods of the part.")}
-_SHORT = {"speed": "sound_speed", "c": "sound_speed", "rho": "density", "modulus": "bulk_modulus"}
 
 
 def of_layers(table: Mapping[str, Any]) -> bool:
@@ -214,12 +217,11 @@ def layer(given: Any, name: str = "layer") -> Layer | Membrane:
     >>> layer({"areal_density": 0.3})
     Membrane(areal_density=(0.3+0j), active=False)
     """
-    table = described(given, name) if isinstance(given, str) else given
+    table = described(given, name, LAYER) if isinstance(given, str) else given
     with _of(name):
-        made = layer_of(table)
-    if made is None:
-        raise _refused(given, name)
-    return made
+        if (made := layer_of(table)) is not None:
+            return made
+    raise refused(given, name)
 
 
 def layer_of(table: Mapping[str, Any]) -> Layer | Membrane | None:
@@ -273,6 +275,7 @@ _FLUIDS = {
     frozenset({"material"}),
     frozenset({"density", "sound_speed"}),
     frozenset({"density", "sound_speed", "attenuation"}),
+    frozenset({"density", "sound_speed", "shear_speed"}),
     frozenset({"density", "bulk_modulus"}),
     frozenset({"density", "bulk_modulus", "density_x"}),
 }
@@ -280,44 +283,28 @@ _FLUIDS = {
 
 def _fluid(values: Mapping[str, Any]) -> Any:
     from ..media.fluids import Fluid
+    from ..media.solids import Solid
 
     if "model" in values:
         return of_model(values)
+    if "shear_speed" in values:
+        with named("sound_speed", "longitudinal_speed"):
+            return Solid(values["density"], values["sound_speed"], values["shear_speed"])
     if "material" in values:
         return _material(values["material"], "material")
     return Fluid.from_speed(**values) if "sound_speed" in values else Fluid(**values)
 
 
-def _material(value: Any, key: str) -> Fluid:
+def _material(value: Any, key: str) -> Any:
     from ..media.materials import material
+    from ..media.solids import Solid
 
     if isinstance(value, Mapping):
         return fluid_of(value)
     with named(key, "name"):
+        if key in ("material", "after") and isinstance(value, str) and value.startswith("solid "):
+            return Solid.from_material(value.removeprefix("solid "))
         return material(value)
-
-
-def described(text: str, name: str) -> dict[str, Any]:
-    """The table that words stand for: key=value, a length, and what is left is a material's name."""
-    table: dict[str, Any] = {}
-    names = []
-    for part in re.sub(rf"(?<=[\d.])\s+(?=({'|'.join(LENGTHS)})\b)", "", text).replace(",", " ").split():
-        key, equals, value = part.partition("=")
-        if equals and _SHORT.get(key, key) in LAYER:
-            table[_SHORT.get(key, key)] = value
-        elif equals:
-            raise _refused(text, name)
-        elif part[0].isdigit() or part[0] in ".+-":
-            table["thickness"] = part
-        else:
-            names.append(part)
-    return table | ({"material": " ".join(names)} if names else {})
-
-
-def _refused(given: Any, name: str) -> ValueError:
-    from .. import validate
-
-    return validate.refuse(name, "a fluid and a thickness such as 'air 5mm' or 'density=1000 speed=1480 2mm'", given)
 
 
 def _half_space(table: Mapping[str, Any], values: Mapping[str, Any], key: str, density: str, speed: str) -> Fluid:

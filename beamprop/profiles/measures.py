@@ -168,10 +168,14 @@ def _power(s: SampledSlab, beam: Beam, transfer: TransferFunction, behind: bool,
 
     def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
         kx = kx.astype(complex)
-        admittance = (s.admittance_after(kx) if behind else s.admittance_before(kx))[0].real
-        h = transfer(kx, face, shift)[0]
-        right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 * admittance for sign in (1, -1))
-        return np.stack([np.abs(h) ** 2 * right, np.abs(h) ** 2 * left, h * (right + left)])
+        if behind:
+            h, flux = transfer_function.transmitted_power(s, kx, beam.z0, shift)
+            weight = np.sqrt(np.maximum(k * k - kx.real**2, 0.0))  # as kz, but for a factor
+        else:
+            h, weight = transfer(kx, face, shift)[0], s.admittance_before(kx)[0].real
+            flux = np.abs(h) ** 2 * weight
+        right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 for sign in (1, -1))
+        return np.stack([flux * right, flux * left, h * weight * (right + left)])
 
     count = 200 + 2 * k * (beam.reach(1e-6) + s.thickness - beam.z0)
     return power.radiated(density, lambda kx: density(kx, SHIFT), k, s.real_branches, count, rtol)

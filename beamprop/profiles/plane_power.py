@@ -1,6 +1,6 @@
 """Power that a beam carries through planes: by Parseval an integral over real kx of the flux of each plane wave along z.
 
-``P(z) = (1/2) Re integral p v_z* dx = (1/4 pi) Re integral |S|^2 H_p H_v* dkx``. Without loss a wave that propagates in neither half-space carries
+``P(z) = (1/2) Re integral p v_z* dx = (1/4 pi) Re integral |S|^2 H_p H_v* dkx``, less s_xz v_x* in solids. Without loss a wave that propagates in neither half-space carries
 none, but for guided modes: what a beam feeds into those runs along x for ever and is left out. With loss it is
 absorbed on the way, and all kx of the source count.
 """
@@ -38,7 +38,7 @@ def power_through_planes(
     Of a periodic array of beams it is the power through one period, a sum of its orders, and no error is known.
     """
     # in a half-space without loss it does not change with z
-    front, behind = (_lossless(s, side) for side in (False, True))
+    front, behind = s.lossless_outside
     z = np.clip(z, 0.0 if front else -math.inf, s.thickness if behind else math.inf)
     planes, which = np.unique(z, return_inverse=True)
     parts = [_through_planes(s, beam, planes[i : i + PLANES], rtol, period) for i in range(0, planes.size, PLANES)]
@@ -46,18 +46,10 @@ def power_through_planes(
     return power[which], max((part[1] for part in parts), key=lambda error: error.total)
 
 
-def _lossless(s: SampledSlab, behind: bool) -> bool:
-    """Whether a half-space carries waves without loss, by its wave along the normal."""
-    normal = np.zeros(1, complex)
-    kz = s.kz_after(normal) if behind else s.kz_before(normal)
-    return not any(np.any(v.imag) for v in (kz, *(s.velocity(normal, q, behind) for q in ("v_x", "v_z"))))
-
-
 def _through_planes(
     s: SampledSlab, beam: Beam, z: np.ndarray, rtol: float, period: float | None
 ) -> tuple[np.ndarray, PowerError]:
     """`power_through_planes` for planes that are held together."""
-    pressure, velocity = (transfer_function.through(s, beam.z0, quantity) for quantity in ("p", "v_z"))
 
     def flux(kx: np.ndarray, shift: float) -> np.ndarray:
         k = kx.astype(complex)
@@ -66,8 +58,8 @@ def _through_planes(
         block = max(1, VALUES // out.shape[0])
         for start in range(0, k.size, block):
             part = slice(start, start + block)
-            out[:-1, part] = pressure(k[part], z, shift) * np.conj(velocity(k[part], z, shift))
-        out[-1] = s.velocity(k, "v_z", False)[0].real  # of the incident beam on its launch plane
+            out[:-1, part] = transfer_function.flux(s, k[part], z, beam.z0, shift)
+        out[-1] = s.velocity(k, "v_z")[0].real  # of the incident beam on its launch plane
         return out * launched
 
     if period is not None:
@@ -90,7 +82,7 @@ def _last_kx(s: SampledSlab, beam: Beam, rtol: float) -> float:
     """|kx| beyond which no plane wave carries power, or none of the source is left."""
     if not beam.entire:
         return float(s.k0)
-    if s.lossless and len(s.real_branches) == 2:
+    if s.lossless and len(s.real_branches) >= 2:
         return float(s.last_branch)
     # fluxes fall off as |S|^2, and as the square of what an evanescent wave has decayed by at the slab
     tolerance, last = 0.1 * math.sqrt(rtol), float(s.last_branch)

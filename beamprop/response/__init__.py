@@ -19,6 +19,6 @@ transfer_function.py: H(kx, z), a plane wave in front of, inside and behind it. 
 
 from .bloch import bloch_error, bloch_wavenumber
 from .conditioning import Checked, solve_checked
-from .slab import Response, solve
+from .slab import Response, solve, transmitted_flux
 
-__all__ = ["Checked", "Response", "bloch_error", "bloch_wavenumber", "solve", "solve_checked"]
+__all__ = ["Checked", "Response", "bloch_error", "bloch_wavenumber", "solve", "solve_checked", "transmitted_flux"]

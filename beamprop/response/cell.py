@@ -13,8 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays.matmul import BLOCK, small_product
+from ..media.solids import SolidBlock
 from ..media.values import LayerValues
-from .layer import State, at_frequencies, several_layers
+from .layer import State, at_frequencies, one_layer, several_layers
+from .solid_run import run_matrix
 
 #: Entries of matrices are kept below this.
 LARGE = 1e60
@@ -85,15 +87,52 @@ def _joined(m: Matrix, last: Matrix) -> Matrix:
     return Matrix(*joined)
 
 
-def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix:
+def _layer_product(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray, kx: np.ndarray) -> Matrix:
     """`reference.cell_matrix`, all layers at once and then pair by pair: (F, n)."""
     A, B, f = several_layers(layers, slice(None), omega * omega, kx2)
     m = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
+    if layers.solids:
+        m = m._replace(e22=m.e22.copy())  # it is e11 in a fluid
+    for slot, run in layers.solids:
+        m = _with_row(m, slot, solid_matrix(run, omega, kx))
     while (count := m.e11.shape[0]) > 1:
         even = count - count % 2
         pairs = times(_mapped(m, lambda v: v[0:even:2]), _mapped(m, lambda v: v[1:even:2]))  # noqa: B023
         m = _joined(pairs, _mapped(m, lambda v: v[even:])) if count % 2 else pairs  # noqa: B023
     return _mapped(m, lambda v: v[0])
+
+
+def solid_matrix(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> Matrix:
+    """The matrix of a run of solids."""
+    f = run_matrix(run, omega, kx)
+    inverse = 1 / np.where(f.divisor == 0, TINIEST, f.divisor)
+    e11, e12, e21, e22 = (v * inverse for v in f[:4])
+    if not np.any(f.growth):
+        return Matrix(1.0, e11, e12, e21, e22, None)
+    return Matrix(np.exp(-f.growth), e11, e12, e21, e22, f.growth)
+
+
+#: Stands for a divisor of exactly 0.
+TINIEST = 1e-150
+
+
+def layer_matrix(layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray) -> Matrix:
+    """The matrix of layer j, or of the run of solids that stands there."""
+    for slot, run in layers.solids:
+        if slot == j:
+            return solid_matrix(run, omega, kx)
+    A, B, f = one_layer(layers, j, omega * omega, kx * kx)
+    return Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
+
+
+def _with_row(m: Matrix, row: int, new: Matrix) -> Matrix:
+    """A stack of matrices with one of them replaced."""
+    if new.growth is not None or m.growth is not None:
+        m, new = _with_growth(m), _with_growth(new)
+    for old, value in zip(m, new, strict=True):
+        if isinstance(old, np.ndarray):
+            old[row] = value
+    return m
 
 
 def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matrix:
@@ -103,19 +142,20 @@ def cell_matrix(layers: LayerValues, omega: np.ndarray, kx: np.ndarray) -> Matri
     """
     kx2 = np.broadcast_to(kx * kx, np.broadcast_shapes(omega.shape, kx.shape)).astype(complex, copy=False)
     count = len(layers.thickness)
-    many = kx2.shape[1] >= 2 * CIRCLE and kx2.size * count >= POLYNOMIAL_FROM
+    kx = np.broadcast_to(kx, kx2.shape)
+    many = kx2.shape[1] >= 2 * CIRCLE and kx2.size * count >= POLYNOMIAL_FROM and not layers.solids
     if many and (fitted := _fitted(layers, omega, kx2)) is not None:
         return fitted
     block = max(1, BLOCK // count)
     if kx2.size <= block:
-        return _layer_product(layers, omega, kx2)
+        return _layer_product(layers, omega, kx2, kx)
     out = np.empty((4, *kx2.shape), complex)
     a, growth = np.ones(kx2.shape), np.zeros(kx2.shape)
     columns = min(kx2.shape[1], max(64, block // kx2.shape[0]))
     rows = max(1, block // columns)
     for i, j in itertools.product(range(0, kx2.shape[0], rows), range(0, kx2.shape[1], columns)):
         part = slice(i, i + rows), slice(j, j + columns)
-        m = _layer_product(at_frequencies(layers, part[0]), omega[part[0]], kx2[part])
+        m = _layer_product(at_frequencies(layers, part[0]), omega[part[0]], kx2[part], kx[part])
         out[:, *part] = m[1:5]
         if m.growth is not None:
             a[part], growth[part] = m.a, m.growth
@@ -142,7 +182,7 @@ def _fitted(layers: LayerValues, omega: np.ndarray, kx2: np.ndarray) -> Matrix |
     if not np.all(_circle_is_calm(layers, omega * omega, radius)):
         return None
     turn = np.exp(2j * np.pi * np.arange(CIRCLE) / CIRCLE)
-    m = _layer_product(layers, omega, radius * turn)
+    m = _layer_product(layers, omega, radius * turn, np.sqrt(radius * turn))
     if m.growth is not None:
         return None
     coefficients = np.fft.fft(np.stack(m[1:5], axis=1), axis=-1) / CIRCLE  # (F, 4, CIRCLE), of v/R

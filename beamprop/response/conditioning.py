@@ -8,7 +8,9 @@ import numpy as np
 
 from ..conventions import outgoing_kz
 from ..media.fluids import FluidValues
+from ..media.solids import SolidHalfSpace
 from ..media.values import Materials, SegmentValues
+from . import solid_half_space
 from .layer import at_frequencies, perturbed
 from .reflection import Stack, reflect
 from .slab import Response, solve
@@ -31,13 +33,14 @@ class Checked(NamedTuple):
     t: np.ndarray
     r_error: np.ndarray
     t_error: np.ndarray
+    waves: np.ndarray | None = None
 
 
 def solve_checked(
     segments: list[SegmentValues],
     materials: list[Materials],
     before: FluidValues,
-    after: FluidValues,
+    after: FluidValues | SolidHalfSpace,
     omega: np.ndarray,
     kx: np.ndarray,
 ) -> Checked:
@@ -51,8 +54,8 @@ def solve_checked(
     larger = np.maximum(r_error, t_error)
     limit = DOUBTFUL * max(1.0, sum(s.periods * len(s.layers.thickness) for s in segments) / 32)
     doubtful = larger > limit
-    out = Checked(one.r, one.t, np.where(doubtful, larger, r_error), larger)
-    if not any(np.any(s.layers.vanishing) for s in segments):
+    out = Checked(one.r, one.t, np.where(doubtful, larger, r_error), larger, one.waves)
+    if isinstance(after, FluidValues) and not any(np.any(s.layers.vanishing) or s.layers.solids for s in segments):
         for i in np.flatnonzero(np.any(doubtful, axis=-1)):
             part = [s._replace(layers=at_frequencies(s.layers, slice(i, i + 1))) for s in segments]
             rows = [m._replace(fluid=FluidValues(*(v[:, i : i + 1] for v in m.fluid))) for m in materials]
@@ -69,7 +72,11 @@ def solve_checked(
 
 
 def _moved(
-    segments: list[SegmentValues], before: FluidValues, after: FluidValues, omega: np.ndarray, kx: np.ndarray
+    segments: list[SegmentValues],
+    before: FluidValues,
+    after: FluidValues | SolidHalfSpace,
+    omega: np.ndarray,
+    kx: np.ndarray,
 ) -> tuple[Response, np.ndarray]:
     """The response at inputs moved by SHIFT, and the moved kx; at grazing incidence kx stays, which is exact there.
 
@@ -81,7 +88,11 @@ def _moved(
     segments = [perturbed(s, SHIFT) for s in segments]
     grazing = outgoing_kz(kx, omega, *(v[:, None] for v in before)) == 0
     moved = np.where(grazing, kx, kx * (1 + SHIFT / 4 * np.exp(0.7j)))
-    behind = after._replace(rho_z=after.rho_z + 1j * SHIFT * np.abs(after.rho_z))
+    behind: FluidValues | SolidHalfSpace
+    if isinstance(after, SolidHalfSpace):
+        behind = solid_half_space.moved(after, SHIFT)
+    else:
+        behind = after._replace(rho_z=after.rho_z + 1j * SHIFT * np.abs(after.rho_z))
     two = solve(segments, before, behind, omega, moved)
     if np.any(grazing):  # a limit 0/0 there, which `solve` knows between equal half-spaces only
         at = np.any(grazing, axis=0)

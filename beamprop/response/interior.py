@@ -10,10 +10,11 @@ import numpy as np
 from ..arrays.exponentials import expm1_of_parts
 from ..arrays.matmul import BLOCK
 from ..media.values import LayerValues, SegmentValues
-from .cell import Matrix, matrix_back, times
+from .cell import Matrix, layer_matrix, matrix_back, times
 from .layer import State, at_frequencies, entire, layer_back, one_layer, several_layers
 from .periods import FADED, TINY, BlochPhase, power_back
 from .recursion import Places, Station, places_of, segment_of
+from .solid_run import inside_run
 
 
 def fill_interior(
@@ -71,9 +72,13 @@ def _fill_single(
     out: np.ndarray,
 ) -> None:
     """Fill rows of `out` that lie in a segment of one period: from the state behind each layer, the rest of that layer."""
-    omega2, kx2 = omega * omega, kx * kx
+    omega2, kx2, solids = omega * omega, kx * kx, dict(station.values.layers.solids)
     for j, here in by_layer(places):
         face = station.faces[j]
+        if j in solids:
+            state = in_layer(station.values.layers, j, omega, kx, face, places.share[here])
+            out[rows[here]] = state.p * np.exp(state.log - near_log) * per_incident
+            continue
         scale = np.exp(face.log[0] - near_log) * per_incident
         A, B, _ = one_layer(station.values.layers, j, omega2, kx2) if here.size >= TWO_WAVES else (None, None, None)
         if A is not None and (w := _steady(A * B)) is not None:
@@ -134,7 +139,7 @@ def _fill_periodic(
     m, b, far = station.matrix, station.bloch, station.far
     assert m is not None
     assert b is not None
-    if m.growth is not None:
+    if m.growth is not None or layers.solids:
         return _fill_opaque(station, omega, kx, places, rows, near_log, per_incident, out)
     behind, which = np.unique(periods - 1 - places.period, return_inverse=True)
     states, factors = _in_two_terms(m, b, far, behind, near_log, per_incident)
@@ -244,16 +249,23 @@ def with_tails(
     layers: LayerValues, omega: np.ndarray, kx: np.ndarray, places: Places
 ) -> Iterator[tuple[int, np.ndarray, Matrix | None]]:
     """Layers that hold depths, the indices of these, and the matrix of the layers behind in the cell."""
-    omega2, kx2 = omega * omega, kx * kx
     holding = dict(by_layer(places))
     tail: Matrix | None = None
     for j in reversed(range(min(holding), len(layers.thickness))):
         if j in holding:
             yield j, holding[j], tail
         if j > min(holding):
-            A, B, f = one_layer(layers, j, omega2, kx2)
-            layer = Matrix(f.a, f.c, A * f.s, -B * f.s, f.c, f.growth)
+            layer = layer_matrix(layers, j, omega, kx)
             tail = layer if tail is None else times(layer, tail)
+
+
+def in_layer(layers: LayerValues, j: int, omega: np.ndarray, kx: np.ndarray, far: State, share: np.ndarray) -> State:
+    """The state at shares (Z,) of layer j in front of its far face, where it is `far`, (1, n) or (Z, n)."""
+    for slot, run in layers.solids:
+        if slot == j:
+            v = inside_run(run, omega, kx, far, share * layers.thickness[j])
+            return State(v.p, v.q, v.log)
+    return layer_back(far, *one_layer(layers, j, omega * omega, kx * kx, share[:, None]))
 
 
 def _fill_opaque(
@@ -275,5 +287,5 @@ def _fill_opaque(
         state = power_back(station.matrix, station.bloch, station.far, behind[:, None])
         if tail is not None:
             state = matrix_back(tail, state)
-        p, _, log = layer_back(state, *one_layer(layers, j, omega * omega, kx * kx, places.share[here][:, None]))
+        p, _, log = in_layer(layers, j, omega, kx, state, places.share[here])
         out[rows[here]] = p * np.exp(log - near_log) * per_incident

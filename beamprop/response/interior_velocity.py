@@ -12,11 +12,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..arrays.matmul import BLOCK
+from ..media.values import LayerValues
 from .cell import matrix_back
 from .interior import ROWS, by_layer, station_at, with_tails
 from .layer import State, layer_back, one_layer
 from .periods import power_back
 from .recursion import Places, Station, places_of, segment_of
+from .solid_run import inside_run, quantity_of, without_zero
 
 
 def fill_velocity(
@@ -26,11 +28,11 @@ def fill_velocity(
     z: np.ndarray,
     near_log: np.ndarray,
     per_incident: np.ndarray,
-    along: str,
+    quantity: str,
 ) -> np.ndarray:
-    """v_z, or v_x over kx, at depths z inside the slab per unit incident pressure: (F, Z, n).
+    """v_z, or v_x or s_xz over kx, at depths z inside the slab per unit incident pressure: (F, Z, n).
 
-    `along` is "z" or "x". A depth on an interface belongs to the layer that begins there.
+    A depth on an interface belongs to the layer that begins there.
     """
     out = np.empty((kx.shape[0], z.size, kx.shape[1]), complex)
     owner = segment_of(np.array([s.start for s in stations]), z)
@@ -44,10 +46,30 @@ def fill_velocity(
                 w, k, at_i = omega[i : i + 1], kx[i : i + 1], station_at(station, i)
                 layers = at_i.values.layers
                 for j, here, behind in _states_behind(at_i, w, k, places):
-                    state = layer_back(behind, *one_layer(layers, j, w * w, k * k, places.share[here][:, None]))
-                    v = -1j * state.q if along == "z" else state.p * (layers.mobility[j, 0] / layers.thickness[j])
-                    out[i, block[here]] = v * np.exp(state.log - near_log[i]) * (per_incident[i] / w[0])
+                    v, log = _velocity(layers, j, (w, k), behind, places.share[here], quantity)
+                    out[i, block[here]] = v * np.exp(log - near_log[i]) * per_incident[i]
     return out
+
+
+def _velocity(
+    layers: LayerValues,
+    j: int,
+    w_and_kx: tuple[np.ndarray, np.ndarray],
+    behind: State,
+    share: np.ndarray,
+    quantity: str,
+) -> tuple[np.ndarray, np.ndarray]:
+    """A quantity of `fill_velocity`, and its logarithm at shares (Z,) of a layer."""
+    w, kx = w_and_kx
+    run = dict(layers.solids).get(j)
+    if run is None:
+        state = layer_back(behind, *one_layer(layers, j, w * w, kx * kx, share[:, None]))
+        if quantity == "s_xz":
+            return 0 * state.p, state.log
+        v = -1j * state.q if quantity == "v_z" else state.p * (layers.mobility[j, 0] / layers.thickness[j])
+        return v / w, state.log
+    inside = inside_run(run, w, without_zero(kx, w), behind, share * layers.thickness[j])
+    return quantity_of(inside, quantity, w, without_zero(kx, w)), inside.log
 
 
 def _states_behind(

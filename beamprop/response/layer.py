@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from ..media.fluids import FluidValues
+from ..media.solids import SolidBlock, SolidLayers
 from ..media.values import LayerValues, SegmentValues
 
 #: Growth in nepers from which a layer's matrix is scaled. Below, exp(2 * 30) is far from overflow.
@@ -121,18 +123,54 @@ def normalised(state: State) -> State:
 
 def at_frequencies(layers: LayerValues, rows: slice | np.ndarray, single: bool = False) -> LayerValues:
     """Some frequencies of a cell's values; a `single` one has the thickness (N,)."""
-    taken = LayerValues(*(v[:, rows] if v.ndim == 2 else v for v in layers))
+    mass, compliance, mobility, thickness, vanishing = (v[:, rows] if v.ndim == 2 else v for v in layers[:5])
+    taken = LayerValues(mass, compliance, mobility, thickness, vanishing)
+    taken = with_solids(taken, layers, lambda v, kind: v[:, rows])
     return taken._replace(thickness=taken.thickness.reshape(-1)) if single else taken
+
+
+def with_solids(
+    values: LayerValues, layers: LayerValues, change: Callable[[np.ndarray, int], np.ndarray]
+) -> LayerValues:
+    """Values with the solids of `layers`, changed: `change(v, kind)` of the density (0), longitudinal (1) and shear modulus (2)."""
+    if not layers.solids:
+        return values
+    solids = []
+    for slot, run in layers.solids:
+        solids.append((slot, changed_run(run, change)))
+    return values._replace(solids=tuple(solids))
+
+
+def changed_run(run: tuple[SolidBlock, ...], change: Callable[[np.ndarray, int], np.ndarray]) -> tuple[SolidBlock, ...]:
+    """A run of solids with its values changed."""
+    blocks = []
+    for block in run:
+        density, modulus, shear = (change(v, kind) for kind, v in enumerate(block.layers[:3]))
+        blocks.append(block._replace(layers=SolidLayers(density, modulus, shear, block.layers.thickness)))
+    return tuple(blocks)
+
+
+def properties(layers: LayerValues) -> list[np.ndarray]:
+    """Masses, compliances and mobilities, and densities and moduli of solids: (N, F) each."""
+    solids = [v for _, run in layers.solids for block in run for v in block.layers[:3]]
+    return [*layers[:3], *solids]
 
 
 def with_loss(layers: LayerValues, loss: float) -> LayerValues:
     """More loss in every layer: rho -> rho + i loss |rho|, 1/K -> 1/K + i loss |1/K|."""
     mass, compliance, mobility = layers[:3]
-    return layers._replace(
+    changed = layers._replace(
         mass=mass + 1j * loss * np.abs(mass),
         compliance=compliance + 1j * loss * np.abs(compliance),
         mobility=mobility - 1j * loss * np.abs(mobility),
     )
+
+    return with_solids(changed, layers, solid_with_loss(loss))
+
+
+def solid_with_loss(loss: float) -> Callable[[np.ndarray, int], np.ndarray]:
+    """The change of a solid's density and moduli by `loss`: see `with_solids`."""
+    return lambda v, kind: v + 1j * loss * np.abs(v) if kind == 0 else 1 / (1 / v + 1j * loss / np.abs(v))
 
 
 def half_space_with_loss(f: FluidValues, loss: float) -> FluidValues:
@@ -152,4 +190,11 @@ def perturbed(segment: SegmentValues, shift: float) -> SegmentValues:
     mass, compliance, mobility = (
         v * (1 + shift * c) for v, c in zip((layers.mass, layers.compliance, layers.mobility), turn, strict=True)
     )
-    return segment._replace(layers=layers._replace(mass=mass, compliance=compliance, mobility=mobility))
+    changed = layers._replace(mass=mass, compliance=compliance, mobility=mobility)
+    return segment._replace(layers=with_solids(changed, layers, solid_perturbed(shift)))
+
+
+def solid_perturbed(shift: float) -> Callable[[np.ndarray, int], np.ndarray]:
+    """The same of a solid's density and moduli: see `with_solids`."""
+    turns = np.random.default_rng(2)
+    return lambda v, kind: v * (1 + shift * np.exp(2j * np.pi * turns.random((len(v), 1))))

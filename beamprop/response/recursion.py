@@ -11,6 +11,7 @@ from ..media.values import LayerValues, SegmentValues
 from .cell import Matrix, cell_matrix
 from .layer import Entire, State, layer_back, normalised, several_layers
 from .periods import BlochPhase, bloch_phase, power_back
+from .solid_run import run_back
 
 
 class Station(NamedTuple):
@@ -64,7 +65,7 @@ def _through_layers(
     The layers' functions are made in blocks.
     """
     omega2, kx2 = omega * omega, kx * kx
-    count = len(layers.thickness)
+    count, solids = len(layers.thickness), dict(layers.solids)
     faces: dict[int, State] = {}
     size = min(16, max(1, BLOCK // max(1, kx2.size)))
     for stop in range(count, 0, -size):
@@ -74,7 +75,9 @@ def _through_layers(
         for j in reversed(range(stop - first)):
             if first + j in wanted:
                 faces[first + j] = state
-            if f.growth is None:
+            if first + j in solids:
+                state = run_back(solids[first + j], omega, kx, state)
+            elif f.growth is None:
                 state = _calm_back(state, f.c[j], As[j], Bs[j])
             else:
                 a = np.broadcast_to(f.a, f.c.shape)[j]

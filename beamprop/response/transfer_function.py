@@ -5,6 +5,7 @@ Free propagation in a half-space and the launch from a plane z0 in front of the 
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .sampled_slab import SampledSlab
+from .slab import Response
 
 #: How far behind a depth v_x is taken, over the depth: a depth on an interface is known to a few units of the last place.
 AT_INTERFACE = 8 * float(np.finfo(float).eps)
@@ -35,7 +37,7 @@ class TransferFunction:
 
 
 def through(s: SampledSlab, z0: float, quantity: str = "p") -> TransferFunction:
-    """Total pressure in front of, inside and behind a slab, of a source on the launch plane z0; or "v_z", or "v_x" over kx."""
+    """Total pressure in front of, inside and behind a slab, of a source on the launch plane z0; or "v_z", or "v_x" or "s_xz" over kx."""
     if quantity == "p":
         return TransferFunction(s, partial(total_pressure, z0=z0))
     return TransferFunction(s, partial(_total_velocity, z0=z0, quantity=quantity))
@@ -115,13 +117,12 @@ def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> 
         if inside.any():
             out[inside] = response.inside[0] * launch if z0 else response.inside[0]
         if behind.any():
-            distance = (z[behind] - s.thickness)[:, None]
-            out[behind] = response.t[0] * launch * propagation(s.kz_after(kx)[0], distance)
+            out[behind] = _behind(s, kx, response, z[behind] - s.thickness, "p") * launch
     return out
 
 
 def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, quantity: str) -> np.ndarray:
-    """v_z, or v_x over kx, at depths z (Z,) of a source on z0, at one frequency: (Z, n).
+    """v_z, or v_x or s_xz over kx, at depths z (Z,) of a source on z0, at one frequency: (Z, n).
 
     v_x jumps at an interface: there it is that of the medium behind, so places are told apart a few units of the last place
     behind z. v_z is continuous.
@@ -138,14 +139,37 @@ def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, qu
             depth, back = z[front][:, None], response.r[0] * launch
             forth = propagation(kz, depth - z0)
             back = back * propagation(kz, -depth)
-            out[front] = s.velocity(kx, quantity, False)[0] * (forth - back if quantity == "v_z" else forth + back)
+            out[front] = s.velocity(kx, quantity)[0] * (forth - back if quantity == "v_z" else forth + back)
         if inside.any():
             out[inside] = response.inside[0] * launch
         if behind.any():
-            distance = np.maximum(z[behind] - s.thickness, 0.0)[:, None]
-            through = response.t[0] * launch * propagation(s.kz_after(kx)[0], distance)
-            out[behind] = s.velocity(kx, quantity, True)[0] * through
+            out[behind] = _behind(s, kx, response, np.maximum(z[behind] - s.thickness, 0.0), quantity) * launch
     return out
+
+
+def _behind(s: SampledSlab, kx: np.ndarray, response: Response, distance: np.ndarray, quantity: str) -> np.ndarray:
+    """The waves behind, at distances (Z,) from the far face: (Z, n)."""
+    parts = (
+        amplitude[0] * propagation(kz[0], distance[:, None]) for kz, amplitude in s.waves_behind(kx, response, quantity)
+    )
+    return functools.reduce(np.add, parts)
+
+
+def flux(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, shift: float = 0.0) -> np.ndarray:
+    """p v_z* - s_xz v_x*, whose real part is twice the power along z, at real kx and depths z (Z,) of a source on z0: (Z, n)."""
+    p, v_z = (through(s, z0, quantity)(kx, z, shift) for quantity in ("p", "v_z"))
+    along = p * np.conj(v_z)
+    if s.carries_shear:
+        s_xz, v_x = (through(s, z0, quantity)(kx, z, shift) for quantity in ("s_xz", "v_x"))
+        along -= (kx * kx) * s_xz * np.conj(v_x)
+    return along
+
+
+def transmitted_power(s: SampledSlab, kx: np.ndarray, z0: float, shift: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    """The transmitted p at the far face, and 2 w times the power along z behind, at real kx of a source on z0: (n,) each."""
+    moved, k = s.perturbed(shift), kx * (1 + shift)
+    response, launch = moved.response(k), launched(moved, k, z0)
+    return (response.t * launch)[0], (s.transmitted_flux(kx, response) * np.abs(launch) ** 2)[0]
 
 
 def _without_slab(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:

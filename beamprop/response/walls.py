@@ -48,4 +48,8 @@ def _walls(segment: SegmentValues) -> list[int]:
 
 def _cut(segment: SegmentValues, start: int, stop: int | None) -> SegmentValues:
     """A single period of the layers from `start` to `stop`."""
-    return SegmentValues(LayerValues(*(v[start:stop] for v in segment.layers)), 1)
+    layers = segment.layers
+    end = len(layers.thickness) if stop is None else stop
+    solids = tuple((slot - start, run) for slot, run in layers.solids if start <= slot < end)
+    mass, compliance, mobility, thickness, vanishing = (v[start:stop] for v in layers[:5])
+    return SegmentValues(LayerValues(mass, compliance, mobility, thickness, vanishing, solids), 1)
