@@ -338,3 +338,14 @@ def test_finite_elements_refuse_solids():
     pytest.importorskip("skfem")
     with pytest.raises(ValueError, match="slab: finite elements take layers of fluid, got Solid"):
         bp.fem.field(PLATE, BEAM, 3e6, [0.0], [0.0], period=0.1)
+
+
+def test_in_three_dimensions_a_wide_beam_on_a_plate_tends_to_that_of_two():
+    """By 4 a doubling of its width along y."""
+    x, z = np.linspace(-5e-3, 10e-3, 16), [-1e-3, 5e-4, 1e-3, 4e-3]
+    flat = bp.field(PLATE, bp.GaussianBeam(6e-3, angle=12, z0=-2e-3), 3e6, x, z).p.values
+    apart = []
+    for width in (24e-3, 48e-3):
+        beam = bp.GaussianBeam((6e-3, width), angle=12, z0=-2e-3)
+        apart.append(abs(bp.field(PLATE, beam, 3e6, x, z, y=0.0).p.values - flat).max())
+    assert apart[0] / apart[1] == pytest.approx(4, rel=0.05)

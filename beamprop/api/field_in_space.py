@@ -10,6 +10,7 @@ import xarray as xr
 from .. import memory, validate
 from ..contour.error import ErrorBudget
 from ..fields.in_space import SpaceQuestion, prepare
+from ..media.fluids import Fluid
 from ..media.structures import Layer, Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
@@ -67,7 +68,8 @@ def _refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
     layers = (layer for cell, _ in slab.segments for layer in cell.layers)
     fluids = [slab.before, slab.after, *(layer.fluid for layer in layers if isinstance(layer, Layer))]
     for fluid in fluids:
-        if fluid.density_x is not None and np.any(np.not_equal(*fluid.at(frequency)[:2])):
+        anisotropic = isinstance(fluid, Fluid) and fluid.density_x is not None
+        if anisotropic and np.any(np.not_equal(*fluid.at(frequency)[:2])):
             raise ValueError(
                 f"density_x: expected none, or density itself, where y is given, got {fluid!r}: a density along x says nothing of that along y"
             )

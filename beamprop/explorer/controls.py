@@ -114,7 +114,9 @@ def _document(study: StudyFile | None) -> Description:
     for part in (document["slab"], *document["slab"].get("stack", ())):
         if part.get("layer") is not None:
             layers = part["layer"] if isinstance(part["layer"], list | tuple) else [part["layer"]]
-            part["layer"] = [parameters.described(v, "layer", parameters.LAYER) if isinstance(v, str) else dict(v) for v in layers]
+            part["layer"] = [
+                parameters.described(v, "layer", parameters.LAYER) if isinstance(v, str) else dict(v) for v in layers
+            ]
     return document
 
 
