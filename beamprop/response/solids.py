@@ -212,10 +212,15 @@ def less_one(y: Basis) -> Less:
 
 def _divided_differences(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(cos sqrt u - cos sqrt v)/(u - v) and the same of sin(sqrt u)/sqrt u, by their series: |u|, |v| < THIN."""
+    size = float(max(np.max(np.abs(u), initial=0.0), np.max(np.abs(v), initial=0.0)))
+    count, last = 3, size * size / 360  # 2 u/4! and 3 u^2/6! are in, over the first one, 1/2!
+    while last > 1e-17 and count < 14:
+        count += 1
+        last *= 1.5 * size / ((2 * count - 1) * 2 * count)
     out = []
     for first in (0, 1):
         coefficient, coefficients = 1.0, [1.0]
-        for n in range(1, 15):
+        for n in range(1, count + 1):
             coefficient *= -1.0 / ((2 * n - 1 + first) * (2 * n + first))
             coefficients.append(coefficient)
         value = np.full(u.shape, coefficients[-1], complex)
