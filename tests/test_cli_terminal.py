@@ -74,7 +74,7 @@ def test_completion(words, offered):
 # --- terminals and signals --------------------------------------------------------------------------------
 
 #: Minutes of work; it makes a block of the map and then the next.
-LONG = ["field", "--lossless", "--x", "-5:5:4001", "--z", "0:2:2001", "--memory", "1", "--output"]
+LONG = ["field", "--lossless", "--x", "-5:5:1001", "--z", "0:2:16001", "--memory", "1", "--output"]
 
 
 @pytest.mark.parametrize(

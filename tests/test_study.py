@@ -129,7 +129,7 @@ FILES = {path: ".".join(path.relative_to(STUDY).with_suffix("").parts) for path 
 #: A file of the study imports only from those before it.
 ORDER = [
     "case",
-    *(f"reference.{name}" for name in ("source", "medium", "many_digits", "near_axis", "misplaced", "contour", "bands", "quadrature", "real_axis", "in_space")),
+    *(f"reference.{name}" for name in ("source", "medium", "many_digits", "near_axis", "misplaced", "contour", "bands", "quadrature", "plain", "real_axis", "in_space")),
     *(f"cases.{name}" for name in ("slabs", "first", "hard", "numbering", "built", "in_space")),
     *(f"study.{name}" for name in ("comparison", "report", "limit", "terms", "in_space", "command")),
 ]  # fmt: skip
