@@ -92,7 +92,8 @@ def row_of(question: FieldQuestion, i: int, variables: tuple[str, ...]) -> Row:
     wanted = {q for v in on_map for q in _summed_for(v)}
     if set(INTENSITY) & set(on_map):
         question = dataclasses.replace(question, rtol=max(question.rtol / 2, 1e-12))
-    wanted -= set() if has_solids(question.slab) else {"s_xz"}
+    if "s_xz" in wanted and not has_solids(question.slab):
+        wanted.remove("s_xz")
     prepared = {q: prepare(question, i, q) for q in SUMMED if q in wanted}
     return Row(on_map, prepared, 2 * np.pi * float(question.frequency[i]))
 
