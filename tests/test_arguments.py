@@ -275,3 +275,13 @@ def test_the_cell_of_equation_10(n_layers, eta, f0):
         assert layer.fluid.density == pytest.approx(3.0 * rho, rel=1e-12)
         assert layer.fluid.bulk_modulus == background.bulk_modulus
         assert layer.thickness == pytest.approx(eta * 500 / f0 / n_layers, rel=1e-14)
+
+
+def test_a_computed_launch_plane_is_the_launch_plane():
+    """A plane in front of it by rounding is on it, one farther off is refused."""
+    slab, beam = bp.Slab.uniform(bp.AIR, 0.01), bp.GaussianBeam(0.05, z0=-0.015)
+    z = -0.5 * 0.03 * (1 + 2**-52)
+    assert z < beam.z0
+    assert float(bp.field(slab, beam, 2500.0, [0.0], [z]).z[0]) == beam.z0
+    with pytest.raises(ValueError, match="z: expected positions not in front of the launch plane"):
+        bp.field(slab, beam, 2500.0, [0.0], [beam.z0 - 1e-12])

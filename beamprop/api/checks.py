@@ -83,6 +83,14 @@ def beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Be
     return checked._replace(source=source, origin=origin)
 
 
+def from_launch_plane(z: np.ndarray, beam: Beam) -> np.ndarray:
+    """Positions from a beam's launch plane on; one that is in front of it by the rounding of a computed axis is on it."""
+    nearest = float(np.min(z))
+    if nearest < beam.z0 - 8 * np.finfo(float).eps * abs(beam.z0):
+        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {nearest}")
+    return np.maximum(z, beam.z0) if nearest < beam.z0 else z
+
+
 def unmoved_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float) -> Beams:
     """The same of a beam where it is, which may be of three dimensions."""
     validate.instance(slab, Slab, "slab")

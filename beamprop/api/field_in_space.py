@@ -29,8 +29,7 @@ def question_in_space(
         raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given", beam)
     source_beam: Any = beam
     azimuth = source_beam.azimuth if places[3] is None else validate.as_number(places[3], "azimuth")
-    if np.min(z) < beam.z0:
-        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(z)}")
+    z = checks.from_launch_plane(z, beam)
     _refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat

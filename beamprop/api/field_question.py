@@ -59,8 +59,7 @@ def checked_question(
     beams = checks.beams(slab, beam, frequency, angle, rtol)
     xs, zs = validate.axis(x, "x"), validate.axis(z, "z")
     validate.word(boundary, "boundary", "open", "periodic")
-    if np.min(zs) < beam.z0:
-        raise ValueError(f"z: expected positions not in front of the launch plane z0 = {beam.z0}, got {np.min(zs)}")
+    zs = checks.from_launch_plane(zs, beam)
     hints.warn_of_width(slab, beam, beams.frequency, xs)
     frequencies, angles = beams.flat
     if average is not None:
