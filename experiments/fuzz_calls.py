@@ -102,6 +102,28 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"width": magnitude, "separation": magnitude},
         {"count": lambda r: int(r.integers(1, 9)), "z0": real},
     ),
+    "Solid": (
+        bp.Solid,
+        {"density": magnitude, "longitudinal_speed": magnitude, "shear_speed": magnitude},
+        {"active": draw_flag},
+    ),
+    "rayleigh_angle": (
+        bp.rayleigh_angle,
+        {"fluid": fluid, "solid": lambda r: bp.Solid(magnitude(r), 5900.0, pick(r, (3200.0, 1100.0, 4200.0)))},
+        {},
+    ),
+    "Piston": (bp.Piston, {"radius": magnitude}, {"baffle": lambda r: "soft", "z0": real}),
+    "Bowl": (bp.Bowl, {"radius_of_curvature": magnitude, "aperture": magnitude}, {"pressure": real, "z0": real}),
+    "SourcePlane": (
+        bp.SourcePlane,
+        {"x": lambda r: [0.0, 0.1, 0.2], "y": lambda r: [0.0, 0.1], "p": lambda r: r.normal(size=(2, 3))},
+        {"z0": lambda r: -magnitude(r)},
+    ),
+    "Array": (
+        bp.Array,
+        {"positions": lambda r: r.normal(size=(3, 2)), "element": lambda r: bp.Piston(0.01)},
+        {"weights": lambda r: [1, 2j, 3], "angle": real},
+    ),
     "scattering": (bp.scattering, {"slab": draw_slab, "frequency": FREQUENCY, "kx_over_k0": draw_axis(-3, 3)}, {}),
     "scattering, angle": (bp.scattering, {"slab": draw_slab, "frequency": FREQUENCY, "angle": ANGLE}, {}),
     "bloch": (

@@ -142,7 +142,12 @@ WRONG = [
     ('bp.GaussianBeam("wide")', "fwhm: expected a real number, got 'wide'"),
     ("bp.GaussianBeam(0)", "fwhm: expected a finite number above zero, got 0.0"),
     ("bp.GaussianBeam(-0.1)", "fwhm: expected a finite number above zero, got -0.1"),
-    ("bp.GaussianBeam([0.1, 0.2])", "fwhm: expected a real number, got [0.1, 0.2]"),
+    ("bp.GaussianBeam([0.1, 0.2, 0.3])", "fwhm: expected a width, or two widths along x and y, got [0.1, 0.2, 0.3]"),
+    ("bp.Piston(-1)", "radius: expected a finite number above zero, got -1.0"),
+    (
+        "bp.Solid(7900, 3200, 5900)",
+        "longitudinal_speed: expected a stable solid, longitudinal_speed^2 > 4/3 shear_speed^2, got a bulk modulus of -2.85769e+11 Pa; active=True allows it",
+    ),
     ("bp.GaussianBeam(0.1, angle=90)", "angle: expected degrees from the normal, between -90 and 90, got 90.0"),
     ("bp.GaussianBeam(0.1, angle=nan)", "angle: expected a finite number, got nan"),
     ("bp.GaussianBeam(0.1, z0=0.1)", "z0: expected a launch plane in front of the slab, z0 <= 0, got 0.1"),

@@ -213,7 +213,7 @@ WRONG = [
     ),
     (
         "beam_width --layers header.csv --frequency 1e6",
-        "--layers: expected columns of thickness (m, cm, mm, um), density (kg/m3, g/cm3), sound_speed (m/s, km/s), bulk_modulus (pa, kpa, mpa, gpa), attenuation (np/m, np/cm, db/m, db/cm, db/mm), reference_frequency (hz, khz, mhz), exponent, areal_density (kg/m2, g/m2), material, got 'thick'",
+        "--layers: expected columns of thickness (m, cm, mm, um), density (kg/m3, g/cm3), sound_speed (m/s, km/s), shear_speed (m/s, km/s), bulk_modulus (pa, kpa, mpa, gpa), attenuation (np/m, np/cm, db/m, db/cm, db/mm), reference_frequency (hz, khz, mhz), exponent, areal_density (kg/m2, g/m2), material, got 'thick'",
     ),
     (
         "beam_width --layers nothing.csv --frequency 1e6",
@@ -279,7 +279,7 @@ WRONG = [
     ),
     (
         "help paint",
-        "COMMAND: expected one of beam_measures, beam_width, bloch, check, compare, convert, field, guided_modes, help, init, run, scattering, got 'paint'",
+        "COMMAND: expected one of beam_measures, beam_width, bloch, check, compare, convert, explore, field, guided_modes, help, init, run, scattering, got 'paint'",
     ),
     ("help field extra", "Got unexpected extra argument (extra)..."),
     (

@@ -51,7 +51,10 @@ class CellMean:
 
     def __call__(self, frequency: np.ndarray) -> np.ndarray:
         mean = _mean(self.cell, real_or_complex(frequency), self.name, self.inverse)
-        return 1 / mean if self.inverse else mean
+        if not self.inverse:
+            return mean
+        # inverses that cancel to exactly 0 are those of an infinite property
+        return np.divide(1, mean, out=np.full(np.shape(mean), np.inf, complex), where=np.not_equal(mean, 0))
 
 
 def _modulation(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

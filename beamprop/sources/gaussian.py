@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .base import Tilted, sin_degrees
 from .in_space import EllipticalGaussian
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class GaussianBeam(Tilted):
     """A Gaussian beam.
 
@@ -62,6 +62,10 @@ class GaussianBeam(Tilted):
         self._check_launch()
         validate.word(self.width_of, "width_of", "pressure", "intensity")
         validate.word(self.form, "form", "launch", "rotated")
+
+    def __repr__(self) -> str:
+        names = (f.name for f in fields(self) if f.name not in ("azimuth", "y0") or getattr(self, f.name))
+        return f"GaussianBeam({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
 
     @property
     def radius(self) -> float:

@@ -83,7 +83,15 @@ class SourcePlane(Tilted):
 
     @classmethod
     def from_data(cls, plane: Any, z0: float = 0.0) -> SourcePlane:
-        """A DataArray of complex pressure along y and x, in any order (``ds.p.sel(z=0.1, method="nearest")``, say)."""
+        """A DataArray of complex pressure along y and x, in any order (``ds.p.sel(z=0.1, method="nearest")``, say).
+
+        Examples
+        --------
+        >>> x = y = np.linspace(-0.05, 0.05, 51)
+        >>> p = xr.DataArray(np.exp(-(x**2 + y[:, None] ** 2) / 0.01**2), {"y": y, "x": x}, ("y", "x"))
+        >>> bp.SourcePlane.from_data(p, z0=-0.03).z0
+        -0.03
+        """
         if sorted(map(str, getattr(plane, "dims", ()))) != ["x", "y"]:
             raise ValueError(
                 f"plane: expected a DataArray along y and x, got {getattr(plane, 'dims', type(plane).__name__)}"
@@ -111,6 +119,13 @@ class SourcePlane(Tilted):
             Names the file, and what it does not hold or holds otherwise.
         OSError
             The file cannot be opened.
+
+        Examples
+        --------
+        >>> x = y = np.linspace(-0.05, 0.05, 51)
+        >>> np.savez("hologram.npz", x=x, y=y, p=np.exp(-(x**2 + y[:, None] ** 2) / 0.01**2))
+        >>> bp.SourcePlane.from_file("hologram.npz", z0=-0.03).z0
+        -0.03
         """
         path = validate.as_path(path)
         validate.flag(conjugate, "conjugate")
