@@ -88,6 +88,7 @@ class SourcePlane(Tilted):
         Examples
         --------
         >>> x = y = np.linspace(-0.05, 0.05, 51)
+        >>> import xarray as xr
         >>> p = xr.DataArray(np.exp(-(x**2 + y[:, None] ** 2) / 0.01**2), {"y": y, "x": x}, ("y", "x"))
         >>> bp.SourcePlane.from_data(p, z0=-0.03).z0
         -0.03
