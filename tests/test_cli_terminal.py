@@ -95,6 +95,23 @@ def test_signals_leave_nothing(number, code, word, tmp_path):
     assert names(tmp_path) == []
 
 
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+def test_a_job_of_a_script_ends_by_sigterm(tmp_path):
+    """A shell's `command &` ignores SIGINT, by whose way SIGTERM goes."""
+    words = [*PROCESS, *LONG, str(tmp_path / "a.nc")]
+    ignoring = f"import os, signal; signal.signal(signal.SIGINT, signal.SIG_IGN); os.execv({words[0]!r}, {words!r})"
+    with subprocess.Popen([sys.executable, "-c", ignoring], stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not list(tmp_path.glob("*/*")) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        process.terminate()
+        try:
+            assert process.wait(30) == 143
+        finally:
+            process.kill()
+    assert names(tmp_path) == []
+
+
 def test_a_closed_pipe_is_no_traceback():
     """`beamprop bloch --json | head -1`."""
     with subprocess.Popen(

@@ -18,6 +18,7 @@ PLATE = bp.Slab(bp.Layer(STEEL, 1e-3), background=WATER)
 @pytest.mark.parametrize(
     ("make", "message"),
     [
+        (lambda: bp.Solid(-7900, 5900, 3200), "density: expected a value above zero, got -7900; active=True allows it"),
         (lambda: bp.Solid(7900, 3200, 3200), "longitudinal_speed: expected a stable solid"),
         (lambda: bp.Solid(7900, 5900 + 1j, 3200), r"longitudinal_speed: expected a passive solid, Im\(bulk modulus\) <= 0"),
         (lambda: bp.Solid(7900, 5900, 3200 + 1j), r"shear_speed: expected a passive solid, Im\(shear modulus\) <= 0"),
@@ -102,3 +103,16 @@ def test_finite_elements_refuse_solids():
     pytest.importorskip("skfem")
     with pytest.raises(ValueError, match="slab: finite elements take layers of fluid, got Solid"):
         bp.fem.field(PLATE, bp.GaussianBeam(0.01), 3e6, [0.0], [0.0], period=0.1)
+
+
+def test_means_over_a_cell_with_solids():
+    """Against 400 planes, whose rule is of second order at the kinks of p on faces."""
+    slab = bp.Slab([bp.Layer(STEEL, 1e-3), bp.Layer(WATER, 2e-3)], 6, background=WATER)
+    beam, x = bp.GaussianBeam(0.01, z0=-1e-3), np.linspace(-0.01, 0.01, 5)
+    mean = bp.field(slab, beam, 3e5, x, [9e-3], average="cell").p.values[0]
+    around = 7.5e-3 + (np.arange(400) + 0.5) * 3e-3 / 400
+    assert abs(bp.field(slab, beam, 3e5, x, around).p.values.mean(axis=0) - mean).max() < 1e-5 * abs(mean).max()
+    with pytest.warns(bp.HintWarning, match="steps of 0.0008 m skip through cells of 0.003 m"):
+        bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22))
+    with pytest.warns(bp.HintWarning, match=r"take z=bp.faces\(slab, ...\)$"):  # there are no means in three dimensions
+        bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22), y=0.0, rtol=1e-4)

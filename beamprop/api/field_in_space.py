@@ -11,6 +11,7 @@ from .. import memory, validate
 from ..contour.error import ErrorBudget
 from ..fields.in_space import SpaceQuestion, prepare
 from ..media.fluids import Fluid
+from ..media.planes import warn_of_stripes
 from ..media.structures import Layer, Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
@@ -33,6 +34,7 @@ def question_in_space(
     _refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat
+    warn_of_stripes(slab, np.atleast_1d(z), frequencies, averages=False)
     checks.warn_if_not_ended(
         beam, np.max(checks.k0(slab, frequencies)), min(float(np.min(z)), 0.0) - beam.z0, beams.rtol
     )

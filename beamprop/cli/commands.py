@@ -62,6 +62,8 @@ def ending_by_signal(ctx: click.Context) -> Iterator[None]:
 
     def terminate(number: int, frame: Any) -> None:
         terminated.append(number)
+        if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in what a script starts with &
+            signal.signal(signal.SIGINT, signal.default_int_handler)
         signal.raise_signal(signal.SIGINT)
 
     in_main = threading.current_thread() is threading.main_thread()

@@ -14,7 +14,7 @@ import numpy as np
 from .. import memory, validate
 from .hints import hint
 from .structures import Cell, Slab
-from .values import layer_values
+from .values import along_normal
 
 #: A cell of at least so many planes is drawn as it is; of fewer, the planes lie on its faces alone.
 RESOLVED = 8
@@ -49,13 +49,13 @@ class Row(NamedTuple):
 
     def ripple(self, frequency: np.ndarray) -> float:
         """Ripple inside a cell over the pressure's mean, of a wave along z: w |G| over the impedance, at most over frequencies [Hz]."""
-        layers = layer_values(self.cell, frequency)
-        omega, share = 2 * np.pi * frequency, layers.thickness / self.cell.thickness
+        masses, compliances, thickness = along_normal(self.cell, frequency)
+        omega, share = 2 * np.pi * frequency, thickness / self.cell.thickness
         with np.errstate(all="ignore"):  # of extreme materials: what is not finite is seen
-            mass = layers.mass.sum(axis=0)
-            G = np.cumsum(layers.mass - mass * share[:, None], axis=0)
+            mass = masses.sum(axis=0)
+            G = np.cumsum(masses - mass * share[:, None], axis=0)
             G = G - (share[:, None] * G).sum(axis=0)
-            modulus = self.cell.thickness / np.abs(layers.compliance.sum(axis=0))
+            modulus = self.cell.thickness / np.abs(compliances.sum(axis=0))
             density = (
                 np.abs(mass) / self.cell.thickness + omega**2 * (share[:, None] * np.abs(G) ** 2).sum(axis=0) / modulus
             )
@@ -190,8 +190,9 @@ def _mean_about(plane: float, rows: list[Row], at: np.ndarray, share: np.ndarray
 # --- stripes that are not there ---------------------------------------------------------------------------
 
 
-def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray) -> None:
-    """A hint that a map's planes skip through the cells of a slab."""
+def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray, averages: bool = True) -> None:
+    """A hint that a map's planes skip through the cells of a slab; `averages`: whether means over cells can be asked for."""
+    instead = ", or average='cell'" if averages else ""
     for row in rows_of(slab):
         inside = np.unique(z[(z >= row.start) & (z <= row.stop)])
         if not row.ripples or inside.size < MAP:
@@ -207,6 +208,6 @@ def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray) -> None:
         if ripple > SEEN:
             hint(
                 f"z: steps of {step:.3g} m skip through cells of {period:.3g} m, inside which the pressure ripples by about "
-                f"{min(ripple, 1.0):.0%} of its mean: a map shows stripes that are not there; take z=bp.faces(slab, ...), or average='cell'"
+                f"{min(ripple, 1.0):.0%} of its mean: a map shows stripes that are not there; take z=bp.faces(slab, ...){instead}"
             )
             return

@@ -143,6 +143,9 @@ class Solid:
         active = self.active or np.iscomplexobj(frequency)
         for name, v in zip(names, (rho, c_l, c_t), strict=True):
             check_property(v, name, gain_sign=1, active=active or name != "density", zero=False)
+        if not active and np.any(rho.real <= 0):
+            given = rho[rho.real <= 0].flat[0].real
+            raise ValueError(f"density: expected a value above zero, got {given:g}; active=True allows it")
         shear, modulus = rho * c_t * c_t, rho * c_l * c_l
         _check_moduli(modulus - 4 / 3 * shear, shear, ("longitudinal_speed", "shear_speed"), active)
         return SolidValues(rho, modulus, shear)

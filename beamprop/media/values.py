@@ -111,6 +111,23 @@ def layer_values(cell: Cell | Sequence[Cell], frequency: np.ndarray) -> LayerVal
     return LayerValues(mass, d / K, mobility * d, thickness, vanishing)
 
 
+def along_normal(cell: Cell, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Masses and compliances (N, F), and thicknesses (N,), of a cell's layers for waves along the normal, which shear nothing."""
+    if not any(is_solid(layer) for layer in cell.layers):
+        layers = layer_values(cell, frequency)
+        return layers.mass, layers.compliance, layers.thickness
+    rows = []
+    for layer in cell.layers:
+        if isinstance(layer, Layer) and isinstance(layer.fluid, Solid):
+            solid = layer.fluid.at(frequency)
+            rows.append((solid.density * layer.thickness, layer.thickness / solid.longitudinal_modulus))
+        else:
+            values = layer_values(Cell((layer,)), frequency)
+            rows.append((values.mass[0], values.compliance[0]))
+    mass, compliance = (np.stack(column) for column in zip(*rows, strict=True))
+    return mass, compliance, np.array([layer.thickness for layer in cell.layers])
+
+
 def slab_values(slab: Slab | Sequence[Slab], frequency: np.ndarray) -> list[SegmentValues]:
     """Segments, from the near face on, at frequencies [Hz] (1-D): of a slab, or of a slab of the same `layout` for each frequency.
 

@@ -81,7 +81,8 @@ def warn_of_grid(ds: xr.Dataset, z: np.ndarray) -> None:
     """A hint that the planes of a field skip through the cells of its slab, unless they are means over a cell."""
     slab = slab_of(ds)
     if slab is not None and "frequency" in ds.coords and "average" not in ds.attrs:
-        warn_of_stripes(slab, z, np.atleast_1d(np.asarray(ds["frequency"].values, float)))
+        frequency = np.atleast_1d(np.asarray(ds["frequency"].values, float))
+        warn_of_stripes(slab, z, frequency, averages=ds.attrs.get("geometry") != "3-D")
 
 
 # --- proportion -------------------------------------------------------------------------------------------
