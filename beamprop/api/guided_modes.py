@@ -12,6 +12,7 @@ from .. import memory, validate
 from ..io import datasets
 from ..media.structures import Slab
 from ..modes import argument_principle, guided
+from ..modes.branches import branches
 from ..response.sampled_slab import SampledSlab, sample
 from . import checks
 
@@ -46,7 +47,9 @@ def guided_modes(
         +Re kx (forward), -1 against it (backward, or a complex mode of a lossless slab that grows along +x); `residual`, the
         last step of Newton's method over kx; `error_estimate`, how far a mode moves, over kx, with the last bits of the
         layers (modes that are nearly one feel their square root). nan and 0 where a frequency has fewer modes than another;
-        `count`, on (frequency), is how many the argument principle counts.
+        `count`, on (frequency), is how many the argument principle counts. Along an array of frequencies, `branch` numbers the
+        dispersion curves: a mode continues the one that is nearest where its curve leads from the frequency before, and
+        steps of frequency as fine as the curves bend keep them whole; -1 where there is no mode.
 
     Warns
     -----
@@ -90,6 +93,8 @@ def guided_modes(
         "error_estimate": (both, error[pick]),
         "count": (dims, np.array([total for _, total in answers])[pick]),
     }
+    if f.ndim:
+        variables["branch"] = both, branches(k0, kx)
     coords = checks.coords(frequency=f) | {"mode": (("mode",), np.arange(most))}
     return datasets.make(
         variables, coords, "guided_modes", flat, slab=slab, kx_over_k0_max=highest, strip_over_k0=strip, leaky=leaky

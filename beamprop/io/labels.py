@@ -33,6 +33,7 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "kz": ("rad/m", "Bloch wavenumber"),
     "kz_over_k0": ("1", "Bloch wavenumber over that of the medium in front"),
     "direction": ("1", "energy along (+1) or against (-1) the phase, laterally; 0 where there is no mode"),
+    "branch": ("1", "number of the dispersion curve along frequency; -1 where there is no mode"),
     "residual": ("1", "last step of the refinement over kx"),
     "count": ("1", "number of modes by the argument principle"),
     "width_1e2": ("m", "full width at 1/e^2 of the largest |p|^2"),

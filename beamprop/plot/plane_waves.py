@@ -211,7 +211,8 @@ def _bloch_maps(v: xr.DataArray, along: str, dim: str | None, where: panels.Wher
 def modes(ds: xr.Dataset, ax: Any = None, label: str | None = None, width: float = style.COLUMN) -> Any:
     """Guided modes: kx/k0 in the complex plane at one frequency, Re kx/k0 against frequency at several.
 
-    Filled circles are forward modes, whose energy flows along their phase, open squares backward ones.
+    Filled circles are forward modes, whose energy flows along their phase, open ones backward modes; lines join the branches that
+    `beamprop.guided_modes` follows along frequency.
 
     Parameters
     ----------
@@ -246,6 +247,8 @@ def modes(ds: xr.Dataset, ax: Any = None, label: str | None = None, width: float
             here = direction.values == sign
             text = f"{label}: {kind}" if label else kind
             axes.plot(x[here], y[here], ls="", marker="o", fillstyle=filled, label=text if here.any() else None)
+        if several and "branch" in ds:
+            _join_branches(axes, x, y, ds["branch"].transpose(*k.dims, ...).values.reshape(k.shape))
         if not np.any(direction):
             axes.text(0.5, 0.6, "no guided mode", transform=axes.transAxes, ha="center", color="0.4")
         if several:
@@ -255,6 +258,14 @@ def modes(ds: xr.Dataset, ax: Any = None, label: str | None = None, width: float
             _complex_plane(axes, y)
         panels.finish(axes, ax is None)
     return axes
+
+
+def _join_branches(ax: Any, x: np.ndarray, y: np.ndarray, branch: np.ndarray) -> None:
+    """A thin line through the modes of each branch, by growing x."""
+    for number in range(int(branch.max(initial=-1)) + 1):
+        here = branch == number
+        order = np.argsort(x[here])
+        ax.plot(x[here][order], y[here][order], color="0.6", lw=0.8, ls="-", zorder=1)
 
 
 def _complex_plane(ax: Any, y: np.ndarray) -> None:

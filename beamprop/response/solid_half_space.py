@@ -14,7 +14,7 @@ import numpy as np
 from ..conventions import branch_wavenumber, outgoing_kz
 from ..media.solids import SolidHalfSpace
 from .layer import State, changed_run, solid_perturbed, solid_with_loss
-from .solid_run import interior, minors_through, quantity_of, vector_through, without_zero
+from .solid_run import interior, quantity_of, through, without_zero
 from .solids import Minors, Split, Vector, from_waves, normalised, to_fluid, vector_of
 
 
@@ -44,7 +44,7 @@ def far_minors(e: Exit) -> Minors:
 
 def near_state(h: SolidHalfSpace, omega: np.ndarray, kx: np.ndarray) -> State:
     """The state of the fluid in front of the half-space and of the solids in contact with it."""
-    minors = minors_through(h.run, omega, kx, far_minors(exit_of(h, omega, kx)))
+    (minors,), _ = through(h.run, omega, kx, (far_minors(exit_of(h, omega, kx)),), ())
     return State(*to_fluid(minors), minors.log)
 
 
@@ -54,7 +54,8 @@ def amplitudes(h: SolidHalfSpace, omega: np.ndarray, kx: np.ndarray, log: np.nda
     zero = np.zeros_like(e.a)
     one = zero + 1
     starts = (one, zero, 1j * e.a / e.rho, zero), (zero, -1j * e.b / e.rho, zero, one)
-    p, s = (vector_through(h.run, omega, kx, vector_of(waves, e.split, zero.real)) for waves in starts)
+    vectors = tuple(vector_of(waves, e.split, zero.real) for waves in starts)
+    _, (p, s) = through(h.run, omega, kx, (), vectors)
     return np.stack([s.T * np.exp(s.log - log), -p.T * np.exp(p.log - log)])
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from ..media.solids import SolidBlock
 from .layer import State
 from .solid_power import block_back
-from .solids import Basis, Minors, Vector, basis, less_one, minors_back, of_fluid, to_fluid, vector_back
+from .solids import Basis, Minors, Vector, basis, minors_back, of_fluid, to_fluid, vector_back
 
 #: Logarithm of a divisor of exactly 0: nothing passes.
 NOTHING = -1e5
@@ -39,8 +39,7 @@ def run_matrix(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -
         return _plate(basis(run[0].layers, 0, omega, kx))
     one, zero = np.ones(np.broadcast_shapes(omega.shape, kx.shape), complex), 0.0
     ends = of_fluid(one, zero * one, zero * one.real), of_fluid(zero * one, one, zero * one.real)
-    by_p, by_q = (minors_through(run, omega, kx, end) for end in ends)
-    v = _divisor_vector(run, omega, kx)
+    (by_p, by_q), (v,) = through(run, omega, kx, ends, (_clamped(omega, kx),))
     size = np.maximum(by_p.log, by_q.log)
     (n11, n21), (n12, n22) = (
         tuple(c * np.exp(m.log - size) for c in to_fluid(m)) for m in (by_p, by_q)
@@ -59,9 +58,9 @@ def run_back(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, far
         p = whole * far.p + (m.f22 * far.p - m.f12 * far.q)
         q = whole * far.q + (m.f11 * far.q - m.f21 * far.p)
         return _in_size(p, q, far.log + m.growth - logarithm(m.divisor))
-    near = minors_through(run, omega, kx, of_fluid(far.p, far.q, far.log))
+    (near,), (v,) = through(run, omega, kx, (of_fluid(far.p, far.q, far.log),), (_clamped(omega, kx),))
     p, q = to_fluid(near)
-    return _in_size(p, q, near.log - run_divisor(run, omega, kx))
+    return _in_size(p, q, near.log - logarithm(v.T) - v.log)
 
 
 def run_divisor(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
@@ -69,7 +68,7 @@ def run_divisor(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) 
     if _single(run):
         m = run_matrix(run, omega, kx)
         return logarithm(m.divisor) + m.log
-    v = _divisor_vector(run, omega, kx)
+    _, (v,) = through(run, omega, kx, (), (_clamped(omega, kx),))
     return logarithm(v.T) + v.log
 
 
@@ -201,32 +200,29 @@ def _single(run: tuple[SolidBlock, ...]) -> bool:
     return len(run) == 1 and run[0].periods == 1 and run[0].layers.thickness.size == 1
 
 
-def minors_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, minors: Minors) -> Minors:
-    """Carry minors back through a run."""
+def through(
+    run: tuple[SolidBlock, ...],
+    omega: np.ndarray,
+    kx: np.ndarray,
+    minors: tuple[Minors, ...],
+    vectors: tuple[Vector, ...],
+) -> tuple[tuple[Minors, ...], tuple[Vector, ...]]:
+    """Carry minors, and solutions, back through a run: its layers are taken once for all of them."""
     for block in reversed(run):
         if block.periods > 1:
-            minors = block_back(block, omega, kx, minors)
+            minors = tuple(block_back(block, omega, kx, m) for m in minors)
+            vectors = tuple(block_back(block, omega, kx, v) for v in vectors)
             continue
         for j in reversed(range(block.layers.thickness.size)):
-            minors = minors_back(minors, basis(block.layers, j, omega, kx))
-    return minors
+            y = basis(block.layers, j, omega, kx)
+            minors, vectors = tuple(minors_back(m, y) for m in minors), tuple(vector_back(v, y) for v in vectors)
+    return minors, vectors
 
 
-def _divisor_vector(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> Vector:
-    """The solution (0, 1 | 0, 0) of the far face, carried back: its T is Y_TX."""
+def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
+    """The solution (0, 1 | 0, 0) of the far face: carried back, its T is Y_TX."""
     zero = np.zeros(np.broadcast_shapes(omega.shape, kx.shape), complex)
-    return vector_through(run, omega, kx, Vector(zero, zero + 1, zero, zero, zero.real))
-
-
-def vector_through(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, v: Vector) -> Vector:
-    """Carry one solution back through a run."""
-    for block in reversed(run):
-        if block.periods > 1:
-            v = block_back(block, omega, kx, v)
-            continue
-        for j in reversed(range(block.layers.thickness.size)):
-            v = vector_back(v, basis(block.layers, j, omega, kx))
-    return v
+    return Vector(zero, zero + 1, zero, zero, zero.real)
 
 
 def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray) -> State:
@@ -242,7 +238,8 @@ def _plate(y: Basis) -> RunMatrix:
     if not y.thin.any():
         assert thick is not None
         return thick
-    f = less_one(y)
+    f = y.less
+    assert f is not None
     divisor = -f.qp[3]
     thin = RunMatrix(
         divisor * f.pp[0] + f.pp[1] * f.qp[2],

@@ -85,6 +85,7 @@ class Basis(NamedTuple):
     calm_p: np.ndarray  # cos - 1, where nothing grows
     calm_s: np.ndarray
     thin: np.ndarray
+    less: Less | None  # its matrix less 1, where some of it is thin
 
 
 def basis(layers: SolidLayers, j: int, omega: np.ndarray, kx: np.ndarray, share: np.ndarray | float = 1.0) -> Basis:
@@ -99,9 +100,10 @@ def basis(layers: SolidLayers, j: int, omega: np.ndarray, kx: np.ndarray, share:
     m, kappa = 2 * kx * mu / w2, kx / rho
     gp, gs = (np.zeros(ua.shape) if f.growth is None else f.growth for f in (p, s))
     thin = (np.abs(ua) < THIN) & (np.abs(ub) < THIN)
-    return Basis(
-        rho, kappa, m, kappa * m, a2, b2, mu / modulus, kT2, kx, d, p.a + p.c, d * p.s, s.a + s.c, d * s.s, gp, gs, p.c, s.c, thin
+    y = Basis(
+        rho, kappa, m, kappa * m, a2, b2, mu / modulus, kT2, kx, d, p.a + p.c, d * p.s, s.a + s.c, d * s.s, gp, gs, p.c, s.c, thin, None
     )  # fmt: skip
+    return y._replace(less=less_one(y)) if thin.any() else y
 
 
 # --- minors ----------------------------------------------------------------------------------------------------
@@ -186,28 +188,25 @@ class Less(NamedTuple):
 
 def less_one(y: Basis) -> Less:
     """The matrix less 1 where a layer is thin: from divided differences, so that nothing cancels for kx beyond kT."""
-    ua, ub = (np.where(y.thin, v * y.d * y.d, 0.0) for v in (y.a2, y.b2))
+    ua, ub = (v * (y.d * y.d) for v in (y.a2, y.b2))
+    if not y.thin.all():
+        ua, ub = np.where(y.thin, ua, 0.0), np.where(y.thin, ub, 0.0)
     cosines, sines = _divided_differences(ua, ub)
     # (a^2 - b^2) d^2 = -kT^2 d^2 (1 - kL^2/kT^2), so that what is divided by kT^2 needs no division
     d2 = y.d * y.d * (y.slowness2 - 1)
     dc, ds = d2 * cosines, d2 * y.d * sines  # (cos ad - cos bd)/kT^2, (S_a - S_b)/kT^2
-    k, k2, e, rho = y.kx, y.kx * y.kx, y.e, y.rho
-    C, sa, sb = y.calm_s, y.sin_p, y.sin_s
-    one = 1 - e
-    full = y.kT2 * dc  # cos ad - cos bd
-    pp = (C + full - 2 * k2 * dc, 2 * k * rho * dc * one, y.kappa * full, C + 2 * k2 * dc)
-    qq = (C + full - 2 * k2 * dc, y.kappa * full, 2 * k * rho * dc * one, C + 2 * k2 * dc)
-    pq12 = k * (-sb + (y.kT2 - 2 * k2) * ds)
-    pq = (rho * (sa - 2 * k2 * (2 - e) * ds), pq12, pq12, (y.kT2 * (sb + k2 * ds)) / rho)
-    qp12 = k * (sb - 2 * y.slowness2 * sa + 2 * k2 * ds)
+    k, e, rho, sa, sb = y.kx, y.e, y.rho, y.sin_p, y.sin_s
+    k2 = k * k
+    full, part = y.kT2 * dc, 2 * k2 * dc  # cos ad - cos bd, and e times it
+    first, last = y.calm_s + (full - part), y.calm_s + part
+    shear, turn = 2 * rho * k * dc * (1 - e), y.kappa * full
+    slow, k2ds = y.slowness2 * sa, k2 * ds
+    pq12 = k * (y.kT2 * ds - 2 * k2ds - sb)
+    pq = (rho * (sa - 2 * (2 - e) * k2ds), pq12, pq12, y.kT2 / rho * (sb + k2ds))
     # e^2 (S_a - S_b) = 2 k^2 e ds;  kL^2 S_a = kL^2/kT^2 kT^2 S_a
-    qp = (
-        -y.kT2 * (y.slowness2 * sa - k2 * ds) / rho,
-        qp12,
-        qp12,
-        -rho * (sb + 2 * e * (y.slowness2 * sa - sb) - 2 * k2 * e * ds),
-    )
-    return Less(pp, pq, qp, qq)
+    qp12 = k * (sb - 2 * (slow - k2ds))
+    qp = (-y.kT2 / rho * (slow - k2ds), qp12, qp12, -rho * (sb + 2 * e * (slow - sb - k2ds)))
+    return Less((first, shear, turn, last), pq, qp, (first, turn, shear, last))
 
 
 def _divided_differences(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -223,9 +222,9 @@ def _divided_differences(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.n
         for n in range(1, count + 1):
             coefficient *= -1.0 / ((2 * n - 1 + first) * (2 * n + first))
             coefficients.append(coefficient)
-        value = np.full(u.shape, coefficients[-1], complex)
-        difference = np.zeros(u.shape, complex)
-        for c in reversed(coefficients[:-1]):
+        difference: np.ndarray = np.array(coefficients[-1])
+        value = difference * v + coefficients[-2]
+        for c in reversed(coefficients[:-2]):
             difference = difference * u + value
             value = value * v + c
         out.append(difference)
@@ -234,22 +233,27 @@ def _divided_differences(u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.n
 
 def _thin_back(far: Minors, y: Basis) -> Minors:
     """P + E P + P E^T + E P E^T for P the antisymmetric matrix of minors and E the matrix back less 1."""
-    f = less_one(y)
-    E = [[f.pp[0], f.pp[1], -f.pq[0], -f.pq[1]], [f.pp[2], f.pp[3], -f.pq[2], -f.pq[3]],
-         [-f.qp[0], -f.qp[1], f.qq[0], f.qq[1]], [-f.qp[2], -f.qp[3], f.qq[2], f.qq[3]]]  # fmt: skip
-    P: list[list[Any]] = [
-        [0.0, far.a, far.q11, far.q12],
-        [-far.a, 0.0, far.q21, -far.q11],
-        [-far.q11, -far.q21, 0.0, far.b],
-        [-far.q12, far.q11, -far.b, 0.0],
-    ]
-    EP = [[sum(E[i][k] * P[k][j] for k in range(4) if k != j) for j in range(4)] for i in range(4)]
-
-    def minor(i: int, j: int) -> np.ndarray:
-        # P E^T = -(E P)^T
-        return P[i][j] + EP[i][j] - EP[j][i] + sum(EP[i][k] * E[j][k] for k in range(4))
-
-    return Minors(minor(0, 1), minor(2, 3), minor(0, 2), minor(0, 3), minor(1, 2), far.log)
+    assert y.less is not None
+    (A11, A12, A21, A22), (B11, B12, _, B22), (C11, C12, _, C22), _ = y.less
+    a, b, q11, q12, q21 = far[:5]
+    # the matrix back less 1 is [[A, -B], [-C, A^T]], that of minors [[a J, Q], [-Q^T, b J]], J = [[0, 1], [-1, 0]]; of E P
+    # the rows 0, 1 and 2 and two entries of the last
+    e00, e01 = B11 * q11 + B12 * q12 - A12 * a, A11 * a + B11 * q21 - B12 * q11
+    e02, e03 = A11 * q11 + A12 * q21 + B12 * b, A11 * q12 - A12 * q11 - B11 * b
+    e10, e11 = B12 * q11 + B22 * q12 - A22 * a, A21 * a + B12 * q21 - B22 * q11
+    e12, e13 = A21 * q11 + A22 * q21 + B22 * b, A21 * q12 - A22 * q11 - B12 * b
+    e20, e21 = C12 * a - A11 * q11 - A21 * q12, A21 * q11 - C11 * a - A11 * q21
+    e22, e23 = -C11 * q11 - C12 * q21 - A21 * b, C12 * q11 - C11 * q12 + A11 * b
+    e30, e32 = C22 * a - A12 * q11 - A22 * q12, -C12 * q11 - C22 * q21 - A22 * b
+    # P E^T = -(E P)^T
+    return Minors(
+        a + (e01 - e10 + (e00 * A21 + e01 * A22 - e02 * B12 - e03 * B22)),
+        b + (e23 - e32 + (e22 * A12 + e23 * A22 - e20 * C12 - e21 * C22)),
+        q11 + (e02 - e20 + (e02 * A11 + e03 * A21 - e00 * C11 - e01 * C12)),
+        q12 + (e03 - e30 + (e02 * A12 + e03 * A22 - e00 * C12 - e01 * C22)),
+        q21 + (e12 - e21 + (e12 * A11 + e13 * A21 - e10 * C11 - e11 * C12)),
+        far.log,
+    )
 
 
 # --- one solution ----------------------------------------------------------------------------------------------
@@ -265,7 +269,8 @@ def _carried(v: Vector, y: Basis, way: float) -> Vector:
     if not y.thin.any():
         assert thick is not None
         return _vector_normalised(thick)
-    f = less_one(y)
+    f = y.less
+    assert f is not None
     p = v.p + (f.pp[0] * v.p + f.pp[1] * v.X + way * (f.pq[0] * v.q + f.pq[1] * v.T))
     X = v.X + (f.pp[2] * v.p + f.pp[3] * v.X + way * (f.pq[2] * v.q + f.pq[3] * v.T))
     q = v.q + (f.qq[0] * v.q + f.qq[1] * v.T + way * (f.qp[0] * v.p + f.qp[1] * v.X))
