@@ -10,6 +10,7 @@ import beamprop as bp
 from beamprop.contour import check_points, stretches
 from beamprop.contour.paths import Extent
 from beamprop.fields import evaluate
+from beamprop.response import transfer_function
 
 SLAB = bp.Slab(bp.lmmd_cell(), 5)
 
@@ -126,3 +127,15 @@ def test_widths_whose_way_without_the_slab_grows_beyond_all_numbers(quiet):
     slab = bp.Slab(bp.lmmd_cell(), 10, before=front, after=bp.AIR)
     with pytest.raises(ValueError, match=r"^(the field|before|slab|rtol)"):
         bp.beam_width(slab, bp.GaussianBeam(0.3, x0=-1.7, z0=-0.1), 1731.5, angle=[-60.0, 60.0], rtol=1e-5)
+
+
+def test_a_rayleigh_angle_needs_a_fluid_that_carries_waves():
+    """It divided by k0 = 0."""
+    with pytest.raises(ValueError, match="fluid: expected one that carries forward waves"):
+        bp.rayleigh_angle(bp.Fluid(-1000.0, 2.2e9), bp.Solid(7900.0, 5900.0, 3200.0))
+
+
+def test_propagation_off_a_far_contour_overflows_without_words_of_numpy():
+    """What is not finite there is refused by name, by the comparison of two contours."""
+    grown = transfer_function.propagation(np.array([1 - 1000j, 1 - 1e300j]), 1e10)
+    assert not np.isfinite(grown).any()

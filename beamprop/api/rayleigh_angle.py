@@ -46,11 +46,16 @@ def rayleigh_angle(fluid: Fluid, solid: Solid, frequency: float = 1e6) -> float:
     validate.instance(solid, Solid, "solid")
     f = validate.as_number(frequency, "frequency", positive=True)
     values, k0 = solid.at(np.array([f])), float(fluid.wavenumber(np.array([f]))[0].real)
+    if not 0 < k0 < np.inf:
+        raise ValueError(f"fluid: expected one that carries forward waves at {f} Hz, got {fluid!r}")
     shear = 2 * np.pi * f * abs(complex(np.sqrt(values.density / values.shear_modulus)[0])) / k0
     if shear < 1:
         modes = guided_modes(Slab.interface(fluid, solid), f, kx_over_k0_max=1.5, strip_over_k0=STRIP, leaky=True)
         k = modes.kx_over_k0.values
         leaky = k[(k.real > shear) & (k.real < 1) & (k.imag > 0)]
     if shear >= 1 or not leaky.size:
-        raise ValueError(f"solid: expected one with a leaky Rayleigh wave in the fluid, got {solid!r}")
+        expected = (
+            "one with a leaky Rayleigh wave in the fluid, faster than sound in it and slower than its own shear wave"
+        )
+        raise validate.refuse("solid", expected, solid)
     return float(np.degrees(np.arcsin(leaky[0].real)))

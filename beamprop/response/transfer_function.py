@@ -77,8 +77,12 @@ def transmitted(s: SampledSlab, z0: float) -> TransferFunction:
 
 
 def propagation(kz: np.ndarray, distance: Any) -> np.ndarray:
-    """exp(i kz distance): what an outgoing wave gains over a distance along its way in a half-space."""
-    return np.exp(1j * (kz * distance))
+    """exp(i kz distance): what an outgoing wave gains over a distance along its way in a half-space.
+
+    On a contour that leaves the axis by too much for the distance it is not finite, which the comparison of two contours refuses.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        return np.exp(1j * (kz * distance))
 
 
 def launched(s: SampledSlab, kx: np.ndarray, z0: float) -> np.ndarray:
@@ -110,7 +114,7 @@ def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> 
     kz = s.kz_before(kx)[0]
     launch = propagation(kz, -z0)
     response = s.response(kx, z[inside])
-    with np.errstate(under="ignore"):
+    with np.errstate(under="ignore", over="ignore", invalid="ignore"):
         if front.any():
             depth = z[front][:, None]
             out[front] = propagation(kz, depth - z0) + response.r[0] * launch * propagation(kz, -depth)
@@ -134,7 +138,7 @@ def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, qu
     response = s.response(kx, at[inside], quantity)
     kz = s.kz_before(kx)[0]
     launch = propagation(kz, -z0)
-    with np.errstate(under="ignore"):
+    with np.errstate(under="ignore", over="ignore", invalid="ignore"):
         if front.any():
             depth, back = z[front][:, None], response.r[0] * launch
             forth = propagation(kz, depth - z0)
@@ -174,5 +178,4 @@ def transmitted_power(s: SampledSlab, kx: np.ndarray, z0: float, shift: float = 
 
 def _without_slab(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
     # beyond 1e39 m the phase overflows; no contour is flat enough for such a distance, and its plane waves are refused
-    with np.errstate(over="ignore", invalid="ignore"):
-        return propagation(s.kz_before(kx)[0], z[:, None])
+    return propagation(s.kz_before(kx)[0], z[:, None])
