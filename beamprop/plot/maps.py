@@ -13,7 +13,7 @@ from .. import validate
 from ..io.datasets import provenance
 from ..media.planes import warn_of_stripes
 from ..media.structures import Slab
-from . import labels, units
+from . import spread, units
 from .quantities import Drawn
 from .style import INCH
 
@@ -71,7 +71,7 @@ def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | 
     if colorbar:
         add_colorbar(ax, mesh, shown)
     notes = [shown.note] * colorbar + [note]
-    ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))), fontsize="medium")
+    ax.set_title("\n".join(filter(None, (spread.where(ds), "; ".join(filter(None, notes))))), fontsize="medium")
     if width is not None:
         _fit_height(ax.figure)
     return mesh
