@@ -4,6 +4,7 @@ import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+import xarray as xr
 from drawn_texts import faults
 
 import beamprop as bp
@@ -217,3 +218,36 @@ def test_what_is_no_map_is_refused(parts, said):
     several = beam().expand_dims(frequency=[1.0, 2.0])
     with pytest.raises(ValueError, match=r"^ds: expected a field on \(z, x\); select one of frequency"):
         bp.plot.field(several)
+
+
+# --- planes of a volume -----------------------------------------------------------------------------------
+
+
+def volume():
+    """Three different counts, so that a swapped axis cannot go unseen."""
+    y = np.linspace(0.0, 0.4, 21)
+    ds = beam(X[::3], Z[::4])
+    there = xr.DataArray(np.exp(-((y / 0.2) ** 2) + 3j * y), dims="y", coords={"y": ("y", y, {"units": "m"})})
+    return ds.assign(p=(ds.p * there).transpose("z", "y", "x").assign_attrs(ds.p.attrs))
+
+
+@pytest.mark.parametrize(
+    ("at", "upright", "level", "title"),
+    [("z", "y", "x", "z = 0.15 m"), ("x", "y", "z", "x = 0.15 m"), ("y", "x", "z", "y = 0.2 m")],
+)
+def test_planes_of_a_volume(at, upright, level, title, monkeypatch):
+    """Each pixel is the value at its place; faces stand where z is on an axis."""
+    ds = volume().sel({at: float(title.split()[2])}, method="nearest")
+    ax = bp.plot.field(ds)
+    np.testing.assert_allclose(pixels(ax), abs(ds.p.transpose(upright, level)), rtol=1e-12)
+    assert (ax.get_ylabel(), ax.get_xlabel()) == (f"{upright} [m]", f"{level} [m]")
+    assert title in ax.get_title()
+    assert bool(vertical(ax, "--")) == (level == "z")
+    assert faults(ax.figure, monkeypatch) == []
+
+
+def test_volumes_are_refused():
+    with pytest.raises(ValueError, match=r"^ds: .* in a volume: select one of y, x or z$"):
+        bp.plot.field(volume())
+    with pytest.raises(ValueError, match=r"^half_level: expected False for a plane at one z"):
+        bp.plot.field(volume().isel(z=3), half_level=True)

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from . import labels, maps, style, units
+from . import labels, maps, panels, style, units
 from .quantities import QUANTITIES, drawn, variables
 
 #: Curves of a picture at most: the line cycle has no more.
@@ -80,8 +80,8 @@ def cut(
         if along == "z":
             maps.warn_of_grid(ds, at)
             maps.outline(axes, ds, axes.get_window_extent().width / axes.figure.dpi * style.INCH, "0.4")
-        axes.set_title(labels.where(ds), fontsize="medium")
-        if len(places) > 1 or label:
+        panels.tell_where(axes, ds)
+        if axes.get_legend_handles_labels()[0]:
             # phases fill the picture: their legend stands beside it
             axes.legend(**{"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if quantity == "phase" else {})
     return axes

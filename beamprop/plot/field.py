@@ -24,12 +24,12 @@ def field(
     half_level: bool = False,
     width: float = style.COLUMN,
 ) -> Any:
-    """Map of a field on (z, x), with the slab's faces as dashed lines and its layers, where there is room, as thin ones.
+    """Map of a field on (z, x), (z, y) or (x, y), with the slab's faces as dashed lines and its layers, where there is room, as thin ones.
 
     Parameters
     ----------
     ds : Dataset
-        From `beamprop.field` at one frequency and angle.
+        From `beamprop.field` at one frequency and angle; of a volume a plane, such as `ds.sel(z=0.1, method="nearest")`.
     quantity : "abs", "real", "phase", "dB" or "intensity"
         \\|p\\|; Re p on a symmetric scale; the phase on a cyclic one; the level of \\|p\\| over its largest; \\|p\\|^2, or the size of the
         time-averaged intensity where the dataset holds intensity_x and intensity_z.
@@ -42,7 +42,7 @@ def field(
     floor : float, dB
         The least level.
     half_level : bool
-        Draw where \\|p\\| is half its largest at each z, as lines along z.
+        Draw where \\|p\\| is half its largest at each z, as lines along z; of a map along z alone.
     width : float, mm
         Of a new figure: 88 is one column of a journal, 180 is two.
 
@@ -70,6 +70,8 @@ def field(
     names = variables(ds, quantity)
     labels.need(ds, *names, "x", "z")
     parts = maps.on_grid(ds, names)
+    if half_level and "z" not in parts[0].dims:
+        raise ValueError("half_level: expected False for a plane at one z, got True")
     shown = drawn(parts, quantity, limit, floor)
     with style.drawing(ax, width) as axes:
         maps.draw(axes, ds, parts[0], shown, width if ax is None else None, colorbar)
@@ -80,12 +82,13 @@ def field(
 
 def _draw_half_level(ax: Any, p: xr.DataArray, color: str) -> None:
     """Both edges of |p| at half its largest on each plane that has values everywhere."""
-    if p.sizes["x"] < 4:
-        raise ValueError(f"ds: expected at least 4 samples along x for half_level, got {p.sizes['x']}")
-    rows = p.transpose("z", "x").values
+    upright = str(p.dims[0])
+    if p.sizes[upright] < 4:
+        raise ValueError(f"ds: expected at least 4 samples along {upright} for half_level, got {p.sizes[upright]}")
+    rows = p.transpose("z", upright).values
     edges = np.full((2, len(rows)), np.nan)
     whole = np.all(np.isfinite(rows), axis=1)
-    widths = of_samples(p["x"].values, rows[whole])
+    widths = of_samples(p[upright].values, rows[whole])
     edges[:, whole] = widths.left, widths.right
     for edge in edges:
         ax.plot(p["z"].values, edge, color=color, ls="-", lw=0.8)

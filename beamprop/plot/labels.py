@@ -7,7 +7,6 @@ from typing import Any
 import xarray as xr
 
 from .. import validate
-from . import units
 
 
 def need(ds: xr.Dataset, *names: str) -> None:
@@ -30,12 +29,3 @@ def title_of(v: Any) -> str:
     unit = v.attrs.get("units", "")
     name = v.attrs.get("long_name", v.name)
     return name if unit in ("", "1") else f"{name} [{unit}]"
-
-
-def where(ds: xr.Dataset) -> str:
-    """Frequency and angle of a dataset of one each."""
-    scalars = {n: ds[n] for n in ("frequency", "angle") if n in ds.coords and ds[n].size == 1}
-    return ", ".join(
-        units.quantity(float(v.squeeze()), v.attrs.get("units", {"frequency": "Hz", "angle": "degree"}[n]))
-        for n, v in scalars.items()
-    )

@@ -13,10 +13,12 @@ from .. import validate
 from ..io.datasets import provenance
 from ..media.planes import warn_of_stripes
 from ..media.structures import Slab
-from . import labels, units
+from . import spread, units
 from .quantities import Drawn
 from .style import INCH
 
+#: Axes of a map, from the upright to the level one.
+PLACES = ("y", "x", "z")
 #: Gap between map and colour bar, and the bar's width [mm].
 GAP, BAR = 1.5, 2.5
 #: What labels and the colour bar take of a figure's width, about [mm].
@@ -32,16 +34,19 @@ APART = 1.2
 
 
 def on_grid(ds: xr.Dataset, names: tuple[str, ...]) -> tuple[xr.DataArray, ...]:
-    """Variables on (x, z), both rising, at one frequency and angle; refused if they are not on a map."""
+    """Variables on a plane, its upright axis and then its level one (z, or else x), both rising; refused if they are not on a map."""
     parts = tuple(ds[name].squeeze(drop=True) for name in names)
     dims = list(map(str, parts[0].dims))
-    if more := [d for d in dims if d not in ("z", "x")]:
+    if more := [d for d in dims if d not in PLACES]:
         raise ValueError(f"ds: expected a field on (z, x); select one of {', '.join(more)}")
+    if len(dims) == 3:
+        raise ValueError("ds: expected a field on a plane, got one in a volume: select one of y, x or z")
     if len(dims) < 2:
         raise ValueError(
             f"ds: expected a field on (z, x), got one {f'along {dims[0]}' if dims else 'point'} for plot.cut"
         )
-    return tuple(part.transpose("x", "z").sortby(["x", "z"]).drop_duplicates(...) for part in parts)
+    order = [d for d in PLACES if d in dims]
+    return tuple(part.transpose(*order).sortby(order).drop_duplicates(...) for part in parts)
 
 
 def slab_of(ds: xr.Dataset) -> Slab | None:
@@ -64,14 +69,15 @@ def checked_scale(limit: float | None, floor: float) -> tuple[float | None, floa
 def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | None, colorbar: bool = True) -> Any:
     """The map of `shown`, which is on the grid of p, with all that belongs to it; its mesh. `width` [mm] is that of a new figure."""
     across = ax.get_window_extent().width / ax.figure.dpi * INCH if width is None else width - BESIDE
-    warn_of_grid(ds, p["z"].values)
     mesh = mesh_of(ax, p, shown)
     note = _shape(ax, p, across)
-    outline(ax, ds, across, shown.line)
+    if "z" in p.dims:
+        warn_of_grid(ds, p["z"].values)
+        outline(ax, ds, across, shown.line)
     if colorbar:
         add_colorbar(ax, mesh, shown)
     notes = [shown.note] * colorbar + [note]
-    ax.set_title("\n".join(filter(None, (labels.where(ds), "; ".join(filter(None, notes))))), fontsize="medium")
+    ax.set_title("\n".join(filter(None, (spread.where(ds), "; ".join(filter(None, notes))))), fontsize="medium")
     if width is not None:
         _fit_height(ax.figure)
     return mesh
@@ -89,14 +95,15 @@ def warn_of_grid(ds: xr.Dataset, z: np.ndarray) -> None:
 
 
 def _span(p: xr.DataArray) -> tuple[float, float]:
-    """What a map spans along z and x [m], with half a step at each end."""
-    return tuple(float(np.ptp(v) * (1 + 1 / (v.size - 1))) for v in (p["z"].values, p["x"].values))  # type: ignore[return-value]
+    """What a map spans to the side and upwards [m], with half a step at each end."""
+    upright, level = (float(np.ptp(p[d].values) * (1 + 1 / (p.sizes[d] - 1))) for d in p.dims)
+    return level, upright
 
 
 def _proportion(p: xr.DataArray, across: float) -> float | None:
     """Height over width in true proportion of a map `across` mm wide, or None where that would be a stripe."""
-    along_z, along_x = _span(p)
-    ratio = along_x / along_z
+    level, upright = _span(p)
+    ratio = upright / level
     return ratio if LOWEST / across <= ratio <= STEEPEST else None
 
 
@@ -105,10 +112,10 @@ def _shape(ax: Any, p: xr.DataArray, across: float) -> str:
     if _proportion(p, across) is not None:
         ax.set_aspect("equal")
         return ""
-    along_z, along_x = _span(p)
+    level, upright = _span(p)
     ax.set_aspect("auto")
-    ax.set_box_aspect(BROAD if along_x < along_z else STEEP)
-    return "x and z not to scale"
+    ax.set_box_aspect(BROAD if upright < level else STEEP)
+    return f"{' and '.join(map(str, p.dims))} not to scale"
 
 
 def _fit_height(figure: Any) -> None:
@@ -126,9 +133,10 @@ def _fit_height(figure: Any) -> None:
 
 def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
     """The map's cells, each about its point."""
+    upright, level = map(str, p.dims)
     mesh = ax.pcolormesh(
-        p["z"].values,
-        p["x"].values,
+        p[level].values,
+        p[upright].values,
         shown.values,
         shading="nearest",
         rasterized=True,
@@ -136,8 +144,8 @@ def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
         vmin=shown.low,
         vmax=shown.high,
     )
-    for axis, name in ((ax.xaxis, "z"), (ax.yaxis, "x")):
-        units.name_axis(axis, name, [p["z"].values, p["x"].values][name == "x"], "m")
+    for axis, name in ((ax.xaxis, level), (ax.yaxis, upright)):
+        units.name_axis(axis, name, p[name].values, "m")
     return mesh
 
 

@@ -111,6 +111,18 @@ def _in_columns(made: Callable[[int], Any], count: int, room: float) -> float:
     return float(box.height)
 
 
+def tell_where(axes: Any, v: xr.DataArray | xr.Dataset) -> Any:
+    """Say what is held at one value above Axes without a title, or above all panels; the Axes."""
+    places, text = np.atleast_1d(axes), spread.where(v)
+    figure = places[0].get_figure(root=True)
+    with style.styled(figure):
+        if places.size > 1 and text:
+            figure.suptitle(text, fontsize="medium")
+        elif places.size == 1 and not places[0].get_title():
+            places[0].set_title(text, fontsize="medium")
+    return axes
+
+
 # --- curves and maps --------------------------------------------------------------------------------------
 
 

@@ -76,7 +76,7 @@ def scattering(
     if spread.plan(v, chosen).is_map:
         for each in np.atleast_1d(axes):
             _mark_grazing(v, each, chosen)
-    return axes
+    return panels.tell_where(axes, ds[quantity])
 
 
 def _mark_grazing(v: xr.DataArray, ax: Any, along: str) -> None:
@@ -145,13 +145,13 @@ def bloch(
     bands = plan.is_map or chosen == "frequency"
     v = spread.in_order(_bands(ds) if bands else v)
     if plan.is_map:
-        return _bloch_maps(v, chosen, plan.panels, (ax, width), imaginary)
+        return panels.tell_where(_bloch_maps(v, chosen, plan.panels, (ax, width), imaginary), ds)
 
     def contours(part: xr.DataArray, axes: Any) -> None:
         _contours(part, chosen, axes, label, bands, (imaginary, mirror))
 
     v.attrs["long_name"] += " (dotted: imaginary part)" if imaginary else ""
-    return panels.draw_curves(v, chosen, plan.panels, (ax, width), contours)
+    return panels.tell_where(panels.draw_curves(v, chosen, plan.panels, (ax, width), contours), ds)
 
 
 def _bands(ds: xr.Dataset) -> xr.DataArray:
@@ -257,7 +257,7 @@ def modes(ds: xr.Dataset, ax: Any = None, label: str | None = None, width: float
         else:
             _complex_plane(axes, y)
         panels.finish(axes, ax is None)
-    return axes
+    return panels.tell_where(axes, ds.drop_vars("mode", errors="ignore"))
 
 
 def _join_branches(ax: Any, x: np.ndarray, y: np.ndarray, branch: np.ndarray) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -16,6 +17,13 @@ from . import labels, units
 MOST = 8
 #: Names of dimensions in pictures, where they are not the long names of the dataset.
 SHORT = {"kx_over_k0": "$k_x/k_0$", "kx": "$k_x$", "angle": "angle"}
+
+#: Letters of a line of a title.
+TITLE = 56
+#: Units of coordinates that do not tell theirs.
+UNITS = {"frequency": "Hz", "angle": "degree", "x": "m", "y": "m", "z": "m"}
+#: Coordinates that say the same: the first that has a value is told.
+LATERAL = ("angle", "kx_over_k0", "kx")
 
 
 def is_number(v: xr.DataArray) -> bool:
@@ -100,8 +108,8 @@ def name_of(v: xr.DataArray, otherwise: str) -> str:
     )
 
 
-def said(v: xr.DataArray, dim: str, index: int) -> str:
-    """A value of a dimension, in words.
+def said(v: xr.DataArray | xr.Dataset, dim: str, index: int, digits: int = 4) -> str:
+    """A value of a coordinate, in words, to so many digits unless it is whole.
 
     Examples
     --------
@@ -109,14 +117,29 @@ def said(v: xr.DataArray, dim: str, index: int) -> str:
     >>> said(v, "eta", 0)
     'eta = 0.05'
     """
-    value, unit = v[dim].values[index], v[dim].attrs.get("units", "")
+    value, unit = np.ravel(v[dim].values)[index], v[dim].attrs.get("units", UNITS.get(dim, ""))
     if not is_number(v[dim]):
         return str(value)
-    value = float(value if value == np.round(value) else f"{value:.4g}")
+    value = float(value if value == np.round(value) else f"{value:.{digits}g}")
     if unit in ("Hz", "degree"):
         return units.quantity(value, unit)
     text = units.number(value) if unit in ("", "1") else units.quantity(value, unit)
     return f"{SHORT.get(dim, dim.replace('_', ' '))} = {text}"
+
+
+def where(v: xr.DataArray | xr.Dataset) -> str:
+    """What is held at one value: frequency, angle (or kx), position and all else that is a number, for a title.
+
+    Examples
+    --------
+    >>> where(xr.DataArray(np.zeros(2), dims="z", coords={"z": [0.0, 1.0], "frequency": 2500.0, "x": 0.005}))
+    '2500 Hz, x = 5 mm'
+    """
+    names = [n for n in map(str, v.coords) if v[n].size == 1 and is_number(v[n]) and np.all(np.isfinite(v[n].values))]
+    lateral = [n for n in LATERAL if n in names]
+    first = [n for n in ("frequency", *lateral[:1]) if n in names]
+    rest = [n for n in names if n not in first and n not in lateral]
+    return textwrap.fill(", ".join(said(v, n, 0, 6) for n in first + rest), TITLE)
 
 
 def each(v: xr.DataArray, along: str) -> Iterator[tuple[str, np.ndarray]]:

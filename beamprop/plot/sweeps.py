@@ -61,7 +61,7 @@ def width(
     chosen = spread.axis_along(behind, along, "frequency", "angle")
     plan = spread.plan(behind, chosen, spread.MOST // len(WIDTHS))
     if plan.is_map:
-        return panels.draw(behind, chosen, (ax, width))
+        return panels.tell_where(panels.draw(behind, chosen, (ax, width)), ds["fwhm_out"])
     kinds = [ds[name].squeeze(drop=True) * 100 for name in WIDTHS]
     v = spread.in_order(xr.concat(kinds, xr.Variable("kind", list(WIDTHS)), join="exact", combine_attrs="drop"))
     small = float(v.max()) < SMALL
@@ -70,7 +70,7 @@ def width(
     def curves(part: xr.DataArray, axes: Any) -> None:
         _widths(part, chosen, axes, label, 10.0 if small else 1.0)
 
-    return panels.draw_curves(v, chosen, plan.panels, (ax, width), curves)
+    return panels.tell_where(panels.draw_curves(v, chosen, plan.panels, (ax, width), curves), ds["fwhm_out"])
 
 
 def _widths(v: xr.DataArray, along: str, ax: Any, label: str | None, factor: float) -> None:
@@ -156,8 +156,10 @@ def sweep(
     if not spread.is_number(v):
         raise validate.refuse("quantity", "a variable of numbers", name)
     if band is None:
-        return panels.draw(v, spread.axis_along(v, along), (ax, width), log)
-    return _band(v, along, band, percentiles, log, (ax, width))
+        axes = panels.draw(v, spread.axis_along(v, along), (ax, width), log)
+    else:
+        axes = _band(v, along, band, percentiles, log, (ax, width))
+    return panels.tell_where(axes, ds[name])
 
 
 def _band(
