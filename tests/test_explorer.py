@@ -79,7 +79,7 @@ def unpacked(answer):
 
 def test_the_map_is_that_of_field():
     """On cell faces, from behind the launch plane to behind the slab, in single precision."""
-    drawn = unpacked(panels.answer(board(), "field", {"question.angle": 30.0, "slab.periods": 100}))
+    drawn = unpacked(panels.answer(board(), "field", {"question.angle": 30.0, "slab.periods": 100, "beam.z0": -0.1}))
     slab = bp.Slab(bp.lmmd_cell(), 100)
     in_cells = drawn["z"].astype(float) / slab.cell.thickness
     np.testing.assert_allclose(in_cells, in_cells.round(), atol=1e-4)
@@ -111,11 +111,24 @@ def test_curves_are_those_of_the_questions():
     kz = bp.bloch(slab.cell, 2500.0, kx_over_k0=np.linspace(-10, 10, 401)).kz_over_k0
     np.testing.assert_allclose(drawn["re"] + 1j * drawn["im"], kz, rtol=1e-6)
     drawn = unpacked(panels.answer(made, "beam_width", {"question.frequency": 2300.0, "question.angle": 20.0}))
-    beam = bp.GaussianBeam(0.096, 20.0, z0=-0.1)
+    beam = bp.GaussianBeam(0.096, 20.0)
     np.testing.assert_allclose(
         drawn["fwhm_out"], bp.beam_width(slab, beam, np.linspace(2000, 3000, 21)).fwhm_out, rtol=1e-6
     )
     assert drawn["here"]["fwhm_out"] == pytest.approx(float(bp.beam_width(slab, beam, 2300.0).fwhm_out), rel=1e-8)
+
+
+def test_first_widths_are_those_of_the_study(tmp_path):
+    """The launch plane is that of the question: the near face for widths, in front of the slab for a study's map, what it says where it does."""
+    drawn = unpacked(panels.answer(board(), "beam_width", {}))
+    alone = bp.beam_width(bp.Slab(bp.lmmd_cell(), 450), bp.GaussianBeam(0.096), 2500.0)
+    assert drawn["here"]["fwhm_out"] == pytest.approx(float(alone.fwhm_out), rel=1e-8)
+    assert board_of(tmp_path, COPIES).at("beam.z0").value == 0.0
+    chosen = state.values_of(board(), {"beam.source": "slits"})
+    assert chosen["beam.z0"] == -0.1
+    for beam in ("", "[beam]\nz0 = -0.2\n"):
+        made = board_of(tmp_path, f'[question]\nname = "field"\n{beam}')
+        assert made.at("beam.z0").value == questions.field_arguments(made.document)["beam"].z0 < 0
 
 
 def test_what_is_not_finite_is_said():

@@ -24,7 +24,7 @@ def test_it_loads_and_draws_all_panels(opened, server):
     assert colours > 100
     for panel in ("scattering", "bloch", "beam_width"):
         assert len(page.get_attribute(f"#{panel} path.line", "d")) > 100
-    expected = bp.beam_width(bp.Slab(bp.lmmd_cell(), 450), bp.GaussianBeam(0.096, z0=-0.1), 2500.0)
+    expected = bp.beam_width(bp.Slab(bp.lmmd_cell(), 450), bp.GaussianBeam(0.096), 2500.0)
     assert width(page) == pytest.approx(float(expected.fwhm_out), rel=1e-8)
     assert page.text_content('dd[data-name="fwhm_out"]') == f"{100 * width(page):.6g} cm"
     assert {urlsplit(url).netloc for url in opened.asked_for if not url.startswith("data:")} == {server.host}
@@ -39,7 +39,7 @@ def test_a_slider_changes_pixels_and_the_width(opened, server):
     assert angle == 4.0
     moved(page, "Layers a cell N", ["ArrowRight", "ArrowRight"])
     slab = bp.Slab(bp.lmmd_cell(n_layers=12), 450)
-    expected = bp.beam_width(slab, bp.GaussianBeam(0.096, angle, z0=-0.1), 2500.0)
+    expected = bp.beam_width(slab, bp.GaussianBeam(0.096, angle), 2500.0)
     assert width(page) == pytest.approx(float(expected.fwhm_out), rel=1e-8)
     after = pixels(page), width(page)
     assert after[0] != before[0]
@@ -125,7 +125,7 @@ def test_values_are_read_with_pointer_and_arrow_keys(opened, server):
     z = (
         2 * slab.cell.thickness * round(z / slab.cell.thickness / 2)
     )  # of which four digits are shown: a plane is on every second face
-    ds = bp.field(slab, bp.GaussianBeam(0.096, z0=-0.1), 2500.0, x, z)
+    ds = bp.field(slab, bp.GaussianBeam(0.096), 2500.0, x, z)
     assert size == pytest.approx(abs(complex(ds.p)), rel=1e-3)
     page.mouse.move(5, 5)
     page.locator("#map-a .plot").focus()
@@ -152,7 +152,7 @@ def test_downloads_hold_what_is_shown(opened, server, tmp_path):
             page.click(f'[data-kind="{kind}"]')
         download.value.save_as(tmp_path / f"a.{kind}")
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-    expected = bp.beam_width(bp.Slab(bp.lmmd_cell(), 30), bp.GaussianBeam(0.096, z0=-0.1), np.linspace(2000, 3000, 21))
+    expected = bp.beam_width(bp.Slab(bp.lmmd_cell(), 30), bp.GaussianBeam(0.096), np.linspace(2000, 3000, 21))
     np.testing.assert_array_equal(bp.load(tmp_path / "a.nc").fwhm_out, expected.fwhm_out)
     page.keyboard.press("Escape")
     assert page.is_hidden("#handout")

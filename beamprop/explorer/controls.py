@@ -39,6 +39,7 @@ class Control:
     #: What may be typed at most; of an angle the slider's end, of others more.
     least: float = -math.inf
     most: float = math.inf
+    slits: float | None = None  #: where it starts once slits are chosen, if elsewhere
 
     def checked(self, value: Any) -> Any:
         """The value, as the study file may hold it.
@@ -105,7 +106,7 @@ def board(study: StudyFile | None = None) -> Board:
 def _document(study: StudyFile | None) -> Description:
     """The description at the first point of the sweep: tables where words may stand, and none that is missing."""
     if study is None:
-        document: Description = {"question": {"name": "field"}}
+        document: Description = {"question": {"name": "beam_width"}}
     else:
         document = study.point.at(**{name: values[0] for name, values in study.axes.items()})
         document = copy.deepcopy(document)
@@ -159,7 +160,11 @@ def _of_beam(document: Mapping[str, Any], design: parameters.Design) -> Iterator
     values = parameters.read(
         {k: v for k, v in beam.items() if k not in ("slits", "profile")}, parameters.BEAM, "beam", design.scale
     )
-    z0 = values["z0"] if "z0" in beam else design.launch
+    # as the question has it: maps of `field` begin in front of the slab, all else at its near face, where the many plane waves of
+    # slits take long: chosen on the page, they start in front
+    in_front = document["question"]["name"] == "field" and "z0" not in beam
+    z0 = design.launch if in_front else values["z0"]
+    of_slits = design.launch if source == "gaussian" and "z0" not in beam else None
     about: dict[str, Any] = {"group": group, "unit": "m"}
     yield Control(
         "beam.fwhm", "Width at launch", value=values["fwhm"], low=0.1 * wave, high=6 * wave, ratio=True, **about
@@ -174,9 +179,8 @@ def _of_beam(document: Mapping[str, Any], design: parameters.Design) -> Iterator
         "beam.slits.separation", "Slit spacing", value=separation, low=0.05 * wave, high=4 * wave, ratio=True, **about
     )
     yield Control("beam.slits.count", "Slits", group, count, "count", low=1, high=12, most=100)
-    yield Control(
-        "beam.z0", "Launch plane z₀, before the slab", value=z0, low=min(-3 * wave, z0), high=0.0, most=0.0, **about
-    )
+    launch: dict[str, Any] = {"value": z0, "low": min(-3 * wave, z0), "high": 0.0, "most": 0.0, "slits": of_slits}
+    yield Control("beam.z0", "Launch plane z₀, before the slab", **launch, **about)
     yield Control("beam.x0", "Middle x₀", value=values["x0"], low=-3 * wave, high=3 * wave, **about)
     words = parameters.BEAM["form"].words
     yield Control("beam.form", "Oblique form", group, values["form"], "word", words=words)

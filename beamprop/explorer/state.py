@@ -33,7 +33,9 @@ def values_of(board: Board, moved: Any) -> dict[str, Any]:
     for path in moved:
         if path not in known:
             raise validate.refuse("state", "paths of values of this study", path)
-    return {path: control.checked(moved[path]) if path in moved else control.value for path, control in known.items()}
+    slits = moved.get("beam.source") == "slits"
+    start = {p: c.slits if slits and c.slits is not None else c.value for p, c in known.items()}
+    return {path: control.checked(moved[path]) if path in moved else start[path] for path, control in known.items()}
 
 
 def description(board: Board, values: Mapping[str, Any], name: str) -> Description:

@@ -18,13 +18,19 @@ const State = (() => {
     /** The value of a control in a slot. */
     value(path, slot = this.active) {
       const moved = this.slots[slot];
-      return path in moved ? moved[path] : this.controls.get(path).value;
+      return path in moved ? moved[path] : this.start(path, slot);
+    }
+
+    /** Where a control starts: the launch plane of slits that were chosen is in front of the slab. */
+    start(path, slot = this.active) {
+      const { value, slits } = this.controls.get(path);
+      return slits !== null && this.slots[slot]["beam.source"] === "slits" ? slits : value;
     }
 
     /** Move a value; `settle` ends a step of undo. */
     move(path, value, settle = true) {
       const moved = { ...this.slots[this.active] };
-      if (value === this.controls.get(path).value) delete moved[path];
+      if (value === this.start(path)) delete moved[path];
       else moved[path] = value;
       this.slots = { ...this.slots, [this.active]: moved };
       this.done(settle);
