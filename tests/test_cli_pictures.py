@@ -64,8 +64,8 @@ def test_the_quantities_of_the_command_are_those_of_the_pictures(question):
     assert run(question, "--quantity", "colour").exit_code == 2
 
 
-def test_the_narrowest_picture_is_that_of_the_style():
-    assert parameters.pictures.NARROWEST == style.NARROWEST
+def test_the_narrowest_and_the_widest_picture_are_those_of_the_style():
+    assert (parameters.pictures.NARROWEST, parameters.pictures.WIDEST) == (style.NARROWEST, style.WIDEST)
 
 
 TOLERANCE = """
@@ -106,3 +106,36 @@ def test_panels_are_written(tmp_path, monkeypatch):
     (tmp_path / "a.svg").unlink()
     good("run", "s.toml")
     assert ">13.33°</text>" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+
+
+def test_options_of_a_picture_without_one_are_told(tmp_path):
+    """The answer is printed as ever."""
+    line = ["scattering", *P, "--angle", "0"]
+    plain, told = good(*line), good(*line, "--quantity", "absorption", "--plot-width", "88")
+    assert told.stdout == plain.stdout
+    assert plain.stderr == ""
+    assert told.stderr == "warning: --quantity, --plot-width: of a picture, and there is no --plot: nothing is drawn\n"
+
+
+def test_measures_are_drawn_against_the_angle_by_default(tmp_path, monkeypatch):
+    """And the study that is saved beside the picture draws the same."""
+    monkeypatch.chdir(tmp_path)
+    good(
+        "beam_measures",
+        *P,
+        "--rtol",
+        "1e-4",
+        "--window",
+        "1",
+        "--plot",
+        "a.svg",
+        "--save-study",
+        "s.toml",
+        "-o",
+        "a.nc",
+    )
+    with bp.load("a.nc") as ds:
+        assert ds.angle.values.tolist() == [5.0 * i for i in range(13)]
+    assert "angle [°]" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+    assert 'angle = "0:60:13"' in (tmp_path / "s.toml").read_text()
+    assert run("beam_measures", *P, "--angle", "30", "--plot", "b.svg").exit_code == 2

@@ -51,7 +51,8 @@ def test_a_figure_of_another_style_keeps_its_own():
 
 
 @pytest.mark.parametrize(
-    ("width", "said"), [(0, "a finite number above zero"), (5, "at least 40 mm, got 5"), ("a", "")]
+    ("width", "said"),
+    [(0, "a finite number above zero"), (5, "at least 40 mm, got 5"), (1e6, "at most 2000 mm, got 1e"), ("a", "")],
 )
 def test_widths_that_hold_no_labels_are_refused(width, said):
     with pytest.raises(ValueError, match=f"^width: expected {said}"):

@@ -226,7 +226,7 @@ WRONG = [
     ("beam_measures --window 0", "--window: expected a finite number above zero, got 0.0"),
     ("beam_measures --window=-1m", "--window: expected a finite number above zero, got -1.0"),
     (
-        "beam_measures --plot a.png",
+        "beam_measures --plot a.png --angle 30",
         "--plot: expected an axis for --frequency or --angle, got one value",
     ),
     (
@@ -251,6 +251,8 @@ WRONG = [
     ("bloch --periods 3", "No such option..."),
     ("bloch --plot a.png --kx-over-k0 1", "--plot: expected an axis for --frequency or --kx-over-k0, got one value"),
     ("bloch --plot a.png --along frequency", "--along: expected kx_over_k0, got 'frequency'"),
+    ("bloch --plot a.png --plot-width 1e6", "--plot-width: expected at most 2000 mm, got 1000000.0"),
+    ("bloch --plot a.png --plot-width wide", "--plot-width: expected a width in mm such as 88, got 'wide'"),
     ("bloch --plot a.png --plot-width 5", "--plot-width: expected at least 40 mm, got 5.0"),
     ("bloch --layer 'areal_density=1' --frequency 1000", "--layer: expected a thickness of at least 1e-50 m, got 0"),
     ("guided_modes --kx-over-k0-max 0", "--kx-over-k0-max: expected a finite number above zero, got 0.0"),

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from .. import memory
-from ..parameters import is_several, named
-from .failures import attempt, in_options
+from ..parameters import PICTURE, is_several, named
+from .failures import attempt, in_options, typed
+from .pictures import was_typed
 from .typed import save_study
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ def answer(
 ) -> xr.Dataset:
     """Ask, draw, write (unless asking has `saved`), print; the dataset. A ValueError is wrong use: exit 2."""
     with _warnings_on_lines():
+        warn_of_no_picture(o)
         ds = attempt(ask)
         files = attempt(lambda: _write(o, ds, draw, saved))
         if o.get("save_study"):
@@ -68,6 +70,13 @@ def _warnings_on_lines() -> Iterator[None]:
             said = [str(w.message) for w in caught if not issubclass(w.category, DeprecationWarning)]
             for message in dict.fromkeys(said):  # a question and its picture may warn of the same
                 click.echo(f"warning: {in_options(message)}", err=True)
+
+
+def warn_of_no_picture(o: Mapping[str, Any]) -> None:
+    """Say that options of a picture were typed, and no picture."""
+    unused = [typed(n) for n in PICTURE if was_typed(n)]
+    if unused and not o.get("plot"):
+        warnings.warn(f"{', '.join(unused)}: of a picture, and there is no --plot: nothing is drawn", stacklevel=2)
 
 
 def check_text(values: float) -> None:

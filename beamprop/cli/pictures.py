@@ -6,9 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import click
+from click.core import ParameterSource
 
+from .. import parameters
 from ..parameters import QUANTITIES, is_several
 from .failures import typed
+from .options import TYPED
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,6 +43,19 @@ def drawing(question: str, said: Mapping[str, Any]) -> Callable[[xr.Dataset], An
         return getattr(plot, name)(ds, **options)
 
     return draw
+
+
+def was_typed(name: str) -> bool:
+    """Whether an option stands on the command line."""
+    return click.get_current_context().get_parameter_source(name) is ParameterSource.COMMANDLINE
+
+
+def default_axis(o: dict[str, Any], name: str, text: str) -> None:
+    """Take an axis as if it had been typed: for a picture, which has nothing to draw at one value."""
+    ctx = click.get_current_context()
+    ctx.meta.setdefault(TYPED, {})[name] = [text]
+    ctx.set_parameter_source(name, ParameterSource.COMMANDLINE)
+    o[name] = parameters.axis(text, typed(name), parameters.AXES[name])
 
 
 def check_axes(o: Mapping[str, Any], axes: Mapping[str, Any]) -> None:

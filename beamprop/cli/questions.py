@@ -30,7 +30,7 @@ from .options import (
     switch,
     words,
 )
-from .pictures import check_axes, drawing
+from .pictures import check_axes, default_axis, drawing, was_typed
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -96,6 +96,8 @@ def beam_measures(**o: Any) -> None:
 
     Widths by three definitions, place, lateral shift, power and divergence.
     """
+    if o["plot"] and not was_typed("angle") and not is_several(o["frequency"]):
+        default_axis(o, "angle", "0:60:13")
     axes = {"frequency": o["frequency"], "angle": o["angle"]}
     check_axes(o, axes)
     check_output(o, axes | {"side": []})

@@ -18,16 +18,18 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         *("peak", "power", "divergence", "far_angle"),
     ),
 }
-#: As that of `plot.style`, which loads matplotlib [mm].
-NARROWEST = 40.0
+#: As those of `plot.style`, which loads matplotlib [mm].
+NARROWEST, WIDEST = 40.0, 2000.0
 
 
 def _width(value: Any, name: str) -> float:
     from .. import validate
 
-    width = validate.as_number(real(value, name), name, positive=True)
+    width = validate.as_number(real(value, name, expected="a width in mm such as 88"), name, positive=True)
     if width < NARROWEST:
         raise validate.refuse(name, f"at least {NARROWEST:g} mm", width)
+    if width > WIDEST:
+        raise validate.refuse(name, f"at most {WIDEST:g} mm", width)
     return width
 
 

@@ -20,6 +20,8 @@ from .. import validate
 COLUMN, PAGE = 88.0, 180.0
 #: A figure narrower than this has no room for its labels [mm].
 NARROWEST = 40.0
+#: Matplotlib refuses pictures of more than 2^16 pixels a side, which at 300 dots an inch are 5.5 m; no sheet is broader than this [mm].
+WIDEST = 2000.0
 #: Height over width of a figure of curves.
 PROPORTION = 0.65
 #: [mm].
@@ -53,6 +55,8 @@ def new_figure(width: float, height: float | None = None) -> Any:
     width = validate.as_number(width, "width", positive=True)
     if width < NARROWEST:
         raise ValueError(f"width: expected at least {NARROWEST:g} mm, got {width:g}: 88 is one column, 180 is two")
+    if width > WIDEST:
+        raise ValueError(f"width: expected at most {WIDEST:g} mm, got {width:g}: 88 is one column, 180 is two")
     size = (width / INCH, (height or PROPORTION * width) / INCH)
     with mpl.rc_context(settings()):
         return plt.figure(FigureClass=PaperFigure, figsize=size, layout="constrained")
