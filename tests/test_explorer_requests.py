@@ -17,6 +17,8 @@ from explorer_server import body_of, head, post, running, sent, status
 
 from beamprop.explorer.http import MOST_BODY, MOST_HEAD, Refused, parsed
 
+#: Slits on the face of a slab without loss.
+SLOW = {"beam.source": "slits", "beam.z0": 0.0, "slab.eta": 0.025, "slab.lossless": True}
 GOOD = {"question": "bloch", "state": {}}
 
 
@@ -28,7 +30,8 @@ def server():
 
 def children(pid):
     """Processes that a process has started."""
-    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()]
+    lists = Path(f"/proc/{pid}/task").glob("*/children")  # each thread has its own
+    return [int(child) for each in lists for child in each.read_text(encoding="ascii").split()]
 
 
 def held(process):
@@ -318,3 +321,21 @@ def test_a_port_that_is_taken_is_an_error(server):
     assert done.returncode == 1
     assert done.stdout == ""
     assert "address already in use" in done.stderr.lower()
+
+
+def test_what_runs_too_long_is_ended():
+    """Many plane waves, which no count of layers tells, are refused at the limit; what is given up is ended; both are answered after."""
+    with running() as server:
+        slow, quick = (
+            post(server, "curve", {"question": q, "state": s}) for q, s in (("beam_width", SLOW), ("bloch", {}))
+        )
+        answer = sent(server, slow)
+        assert status(answer) == 422
+        assert b"at most 5 s, got one that takes longer" in answer
+        assert status(sent(server, quick)) == 200
+        before = set(children(server.process.pid))
+        with socket.create_connection(("127.0.0.1", server.port), 10) as client:
+            client.sendall(slow)
+            time.sleep(1.0)
+        assert status(sent(server, quick)) == 200
+        assert len(before - set(children(server.process.pid))) == 1

@@ -10,6 +10,10 @@ from ..study.predict import duration
 
 #: What the page waits for at most [s].
 MOST_SECONDS = 5.0
+#: What counts do not tell, the clock does: the process that answers is ended by then.
+TOO_LONG = (
+    f"question: expected one of at most {duration(MOST_SECONDS)}, got one that takes longer; ask it with beamprop run"
+)
 #: Seconds for each layer that differs, by question; measured by experiments/benchmarks/explorer.py with 10000 layers in a cell.
 EACH_LAYER = {"field": 6e-5, "scattering": 1.3e-4, "bloch": 1.3e-4, "beam_width": 3e-4}
 

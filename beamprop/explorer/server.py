@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import importlib
+import json
 import multiprocessing
 import os
 import queue
@@ -16,10 +18,12 @@ import secrets
 import signal
 import sys
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Coroutine
 from multiprocessing.connection import Connection
 from typing import Any
 
+from . import cost
 from .controls import Board
 from .http import MOST_HEAD, Refused, Response, read, refusal, write
 from .routes import POSTED, Site, admit, respond
@@ -28,6 +32,8 @@ from .routes import POSTED, Site, admit, respond
 MOST_READ, MOST_WAITING = 64, 16
 #: Seconds between two looks at the parent process.
 LOOK = 1.0
+#: Seconds between two looks at whether an answer is still wanted; and what a file may take, for which fonts may have to be listed first.
+GLANCE, FILE_SECONDS = 0.1, 60.0
 
 
 class Solver:
@@ -54,7 +60,9 @@ class Solver:
     def _run(self) -> None:
         while True:
             future, route, body = self.work.get()
-            response = self.child.answer(route, body)
+            if future.cancelled():
+                continue
+            response = self.child.answer(route, body, future.cancelled)
             future.get_loop().call_soon_threadsafe(_settle, future, response)
 
 
@@ -70,34 +78,51 @@ def answered(board: Board, route: str, body: bytes) -> Response:
 
 
 class Child:
-    """A process that answers as `answered` does; another takes its place if it is lost."""
+    """A process that answers as `answered` does; another takes its place if it is lost, or takes too long."""
 
     def __init__(self, board: Board) -> None:
         self.board = board
-        self.connection = self._start()
+        self._start()
 
-    def _start(self) -> Connection:
+    def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe()
-        context.Process(target=_answer_all, args=(theirs, self.board), daemon=True).start()
+        self.connection, theirs = context.Pipe()
+        self.process = context.Process(target=_answer_all, args=(theirs, self.board), daemon=True)
+        self.process.start()
+        self.ready = False
         theirs.close()
-        return ours
 
-    def answer(self, route: str, body: bytes) -> Response:
-        """The answer to a request."""
+    def answer(self, route: str, body: bytes, given_up: Callable[[], bool] = lambda: False) -> Response:
+        """The answer to a request; a refusal where it takes too long, or nobody waits for it any more."""
         try:
+            if not self.ready:  # its imports are no part of a question's time
+                self.ready = self.connection.recv()
             self.connection.send((route, body))
+            end = time.monotonic() + (FILE_SECONDS if route == "file" else cost.MOST_SECONDS)
+            while not self.connection.poll(GLANCE):
+                if given_up() or time.monotonic() > end:
+                    self._replace()
+                    return Response(422, json.dumps({"error": cost.TOO_LONG}).encode(), "application/json")
             response: Response = self.connection.recv()
         except (EOFError, OSError):
-            self.connection = self._start()
+            self._replace()
             return refusal(503)
         return response
+
+    def _replace(self) -> None:
+        self.process.kill()
+        self.process.join()
+        self.connection.close()
+        self._start()
 
 
 def _answer_all(connection: Connection, board: Board) -> None:
     """Answer what comes until the other end is closed, which the end of its process does. Ctrl-C in the terminal is for that process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("field", "scattering", "bloch", "beam_width"):  # imported on first use
+        getattr(importlib.import_module(__name__.partition(".")[0]), name)
     with contextlib.suppress(EOFError, OSError):
+        connection.send(True)
         while True:
             connection.send(answered(board, *connection.recv()))
 
@@ -146,8 +171,24 @@ class Server:
         finally:
             self.reading.pop(task, None)
         if route in self.solvers:
-            return await self.solvers[route].ask(route, request.body)
+            return await _while_it_is_read(reader, self.solvers[route].ask(route, request.body))
         return answered(self.site.board, route, request.body)
+
+
+async def _while_it_is_read(reader: asyncio.StreamReader, answer: Coroutine[Any, Any, Response]) -> Response:
+    """The answer, which is given up where its client leaves: a page does when a newer state waits long."""
+    asked, left = asyncio.ensure_future(answer), asyncio.ensure_future(reader.read(1))
+    try:
+        await asyncio.wait((asked, left), return_when=asyncio.FIRST_COMPLETED)
+        if not asked.done() and left.result():  # more bytes are no farewell
+            await asked
+        if not asked.done():
+            raise ConnectionAbortedError
+        return asked.result()
+    finally:
+        asked.cancel()
+        left.cancel()
+        await asyncio.gather(left, return_exceptions=True)
 
 
 async def _serve(board: Board, port: int, started: Callable[[str], None]) -> None:

@@ -13,12 +13,15 @@
     beam_width: /^view\.(x|behind|kx|contour)$/,
   };
   const WIDTHS = [["fwhm_out", "Width behind the slab"], ["fwhm_in", "Width at the near face"], ["fwhm_air", "Width without the slab"]];
-  const answers = { a: {}, b: {} }, running = new Set(), shown = {}, maps = {};
-  let state, sliders, curves, remark = [], moving = 0;
+  const answers = { a: {}, b: {} }, running = new Map(), shown = {}, maps = {};
+  let state, sliders, curves, remark = [], moving = 0, fading = 0;
 
-  async function post(route, body) {
-    const gone = () => { throw new Error("the server does not answer: start beamprop explore again"); };
-    const response = await fetch(route, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) }).catch(gone);
+  /** An answer that a newer state waits for is given up after so long, and pictures fade after so long without theirs [ms]. */
+  const PATIENCE = 2000, FADE = 500;
+
+  async function post(route, body, signal) {
+    const gone = (error) => { throw signal?.aborted ? error : new Error("the server does not answer: start beamprop explore again"); };
+    const response = await fetch(route, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal }).catch(gone);
     if (response.ok) return response;
     const said = response.headers.get("Content-Type") === "application/json" ? (await response.json()).error : `${response.status} ${response.statusText}`;
     throw new Error(said);
@@ -43,16 +46,22 @@
     const slots = state.slots.b ? ["a", "b"] : ["a"];
     for (const question of QUESTIONS) for (const slot of slots) {
       const job = `${question} ${slot}`, wanted = needed(question, slot), have = answers[slot][question];
-      if (running.has(job) || (have && have.of === wanted)) continue;
+      if (running.has(job)) {
+        const { of, since, control } = running.get(job);
+        if (of !== wanted) setTimeout(() => { if (needed(question, slot) !== of) control.abort(); }, Math.max(0, since + PATIENCE - Date.now()));
+        continue;
+      }
+      if (have && have.of === wanted) continue;
       // widths take longest of the curves: the others go first
       if (question === "beam_width" && (running.has(`scattering ${slot}`) || running.has(`bloch ${slot}`))) continue;
-      running.add(job);
-      const moved = state.slots[slot];
-      post(question === "field" ? "map" : "curve", { question, state: moved })
+      const moved = state.slots[slot], control = new AbortController();
+      running.set(job, { of: wanted, since: Date.now(), control });
+      post(question === "field" ? "map" : "curve", { question, state: moved }, control.signal)
         .then(async (response) => ({ of: wanted, moved, ...unpack(await response.arrayBuffer()) }))
-        .catch((error) => ({ of: wanted, refused: error.message }))
+        .catch((error) => (control.signal.aborted ? null : { of: wanted, refused: error.message }))
         .then((answer) => {
           running.delete(job);
+          if (!answer) { ask(); return; }
           const last = answers[slot][question];
           answers[slot][question] = answer.refused && last ? { ...last, of: wanted, refused: answer.refused } : answer;
           draw(question);
@@ -60,6 +69,8 @@
         });
     }
     byId("busy").textContent = running.size ? "…" : spent();
+    if (!running.size) { clearTimeout(fading); fading = 0; document.body.classList.remove("waiting"); }
+    else if (!fading) fading = setTimeout(() => document.body.classList.add("waiting"), FADE);
     document.body.dataset.idle = String(running.size === 0);
   }
 
