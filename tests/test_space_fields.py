@@ -89,7 +89,7 @@ def test_rayleighs_integral_in_air(beam):
 def test_cuts_planes_and_volumes_are_the_same_field(shape):
     """By rows, by planes and by low rank, at positions that they share."""
     source, x, y = BEAMS["elliptical"], np.linspace(-0.7, 0.7, 15), np.linspace(-0.6, 0.6, 13)
-    z = np.linspace(0.0, LOSSLESS.thickness + 0.2, 210)
+    z = bp.faces(LOSSLESS, 210, after=0.2)
     grids = {"cut": (x, y[7], z), "plane": (x, y, z[70]), "volume": (x, y, z)}
     gx, gy, gz = grids[shape]
     ds = bp.field(LOSSLESS, source, FREQUENCY, gx, gz, y=gy, rtol=1e-9)
