@@ -116,7 +116,7 @@ def test_frames_of_the_file():
 
 def test_films_tell_how_far_the_colours_go_at_any_time():
     ds = make()
-    quarter = ds.assign(p=ds.p * 1j)
+    quarter = ds.assign(p=(ds.p * 1j).assign_attrs(ds.p.attrs))
     for turned in (ds, quarter):
         ax = bp.plot.animate(turned, "beam.gif", frames=2, limit=0.5)
         assert ax.get_title() == "values from −1 to 1 Pa"

@@ -182,7 +182,8 @@ def mesh(v: xr.DataArray, along: str, ax: Any, scale: Colours) -> Any:
 def colour_bar(drawn: Any, axes: Any, scale: Colours, v: xr.DataArray) -> None:
     """The colour bar of maps, which says where colours end before the values do."""
     bar = np.atleast_1d(axes)[0].figure.colorbar(drawn, ax=axes, extend=scale.extend, aspect=30, pad=0.02)
-    name_values(bar.ax.yaxis, v.clip(max=scale.options.get("vmax")), "norm" in scale.options)
+    top = scale.options.get("vmax")
+    name_values(bar.ax.yaxis, v if top is None else v.clip(max=top), "norm" in scale.options)
     bar.ax.set_ylabel(bar.ax.get_ylabel() + scale.note)
     wrap(bar.ax.yaxis)
 
