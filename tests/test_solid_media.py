@@ -5,6 +5,7 @@ import pytest
 
 import beamprop as bp
 from beamprop import parameters
+from beamprop.response.sampled_slab import sample
 
 WATER = bp.Fluid.from_speed(1000.0, 1480.0)
 STEEL = bp.Solid(7900.0, 5900.0, 3200.0)
@@ -116,3 +117,22 @@ def test_means_over_a_cell_with_solids():
         bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22))
     with pytest.warns(bp.HintWarning, match=r"take z=bp.faces\(slab, ...\)$"):  # there are no means in three dimensions
         bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22), y=0.0, rtol=1e-4)
+
+
+@pytest.mark.parametrize("after", [WATER, STEEL])
+def test_added_loss_is_that_of_lossy_solids(after):
+    """rho (1 + i loss), and moduli over 1 + i loss: what shows the direction of a mode takes energy away."""
+    loss, kx = 0.03, 2 * np.pi * 1e6 / 1480 * np.linspace(0.05, 0.95, 10)
+
+    def lossy(solid):
+        rho, c_l, c_t = solid.density, solid.longitudinal_speed, solid.shear_speed
+        speed = 1 / (1 + 1j * loss)  # sqrt of modulus over density
+        return bp.Solid(rho * (1 + 1j * loss), c_l * speed, c_t * speed)
+
+    water = bp.Fluid(1000.0 * (1 + 1j * loss), 1000.0 * 1480.0**2 / (1 + 1j * loss))
+    plain = bp.Slab([bp.Layer(STEEL, 1e-3), bp.Layer(ALUMINIUM, 5e-4)], before=WATER, after=after)
+    behind = water if after is WATER else lossy(STEEL)
+    made = bp.Slab([bp.Layer(lossy(STEEL), 1e-3), bp.Layer(lossy(ALUMINIUM), 5e-4)], before=water, after=behind)
+    added, given = (s.response(kx) for s in (sample(plain, 1e6).with_loss(loss), sample(made, 1e6)))
+    assert abs(added.r - given.r).max() < 1e-12
+    assert abs(added.t - given.t).max() < 1e-12
