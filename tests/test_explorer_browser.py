@@ -30,6 +30,23 @@ def test_it_loads_and_draws_all_panels(opened, server):
     assert {urlsplit(url).netloc for url in opened.asked_for if not url.startswith("data:")} == {server.host}
 
 
+def test_what_is_no_number_is_refused_in_words_and_curves_keep_to_their_box(opened, server):
+    """A unit that is typed is told beside its control until a number comes; lines are drawn within the axes."""
+    page = opened(server.url)
+    typed = page.get_by_label("Frequency, typed", exact=True)
+    typed.fill("500kHz")
+    typed.press("Enter")
+    assert page.locator("#v-question-frequency-wrong").first.inner_text() == "expected a number in Hz, got 500kHz"
+    typed.fill("2400")
+    typed.press("Enter")
+    settled(page)
+    assert page.locator("#v-question-frequency-wrong").first.inner_text() == ""
+    assert page.locator(".plot svg svg path.line").count() > 4
+    assert page.evaluate(
+        "[...document.querySelectorAll('.plot svg svg')].every((box) => getComputedStyle(box).overflow === 'hidden')"
+    )
+
+
 def test_a_slider_changes_pixels_and_the_width(opened, server):
     """By keyboard alone; what is printed is what `beam_width` answers, and undo and redo bring both back."""
     page = opened(server.url)

@@ -105,7 +105,7 @@ const Plots = (() => {
       this.box = box;
       const drawn = lines.map((line) => `<path class="line ${line.style}" d="${path(line, axes, yr, box)}"/>`).join("");
       const now = about.now >= xr[0] && about.now <= xr[1] ? `<line class="now" x1="${axes.sx(about.now)}" x2="${axes.sx(about.now)}" y1="${box.y}" y2="${box.y + box.h}"/>` : "";
-      this.parts.plot.innerHTML = `<svg width="${width}" height="${height}" role="img" aria-label="${escape(this.name)}">${axes.markup}${now}${drawn}<line class="cursor" visibility="hidden"/></svg>`;
+      this.parts.plot.innerHTML = `<svg width="${width}" height="${height}" role="img" aria-label="${escape(this.name)}">${axes.markup}${now}<svg x="${box.x}" y="${box.y}" width="${box.w}" height="${box.h}" viewBox="${box.x} ${box.y} ${box.w} ${box.h}">${drawn}</svg><line class="cursor" visibility="hidden"/></svg>`;
       this.key.innerHTML = lines.map((l) => `<li><svg viewBox="0 0 24 8" aria-hidden="true"><line class="line ${l.style}" x1="0" x2="24" y1="4" y2="4"/></svg>${escape(l.label)}</li>`).join("");
       this.readAt(this.index);
     }
@@ -148,7 +148,7 @@ const Plots = (() => {
     for (let i = 0; i < line.x.length; i++) {
       const v = line.y[i];
       if (!isFinite(v)) { pen = "M"; continue; }
-      const y = Math.max(box.y - 4, Math.min(box.y + box.h + 4, axes.sy(v)));
+      const y = Math.max(-10 * box.h, Math.min(10 * box.h, axes.sy(v))); // what lies outside of the box is clipped
       d += `${pen}${axes.sx(line.x[i]).toFixed(1)} ${y.toFixed(1)}`;
       pen = "L";
     }

@@ -44,13 +44,18 @@ const Sliders = (() => {
     number(control, parts, id) {
       parts.typed = make("input", { id: `${id}-typed`, type: "text", inputMode: "decimal", spellcheck: false });
       parts.typed.setAttribute("aria-label", `${control.label}, typed`);
+      parts.wrong = make("p", { id: `${id}-wrong`, className: "wrong" });
+      parts.wrong.setAttribute("role", "alert");
+      parts.typed.setAttribute("aria-describedby", parts.wrong.id);
       parts.slider = make("input", { id, type: "range", min: 0, max: State.steps(control), step: 1 });
-      parts.row.append(make("span", { className: "typed" }, parts.typed, make("span", { className: "unit", textContent: control.unit })), parts.slider);
+      parts.row.append(make("span", { className: "typed" }, parts.typed, make("span", { className: "unit", textContent: control.unit })), parts.slider, parts.wrong);
       parts.slider.addEventListener("input", () => this.state.move(control.path, State.at(control, Number(parts.slider.value)), false));
       parts.slider.addEventListener("change", () => this.state.done(true));
       parts.typed.addEventListener("change", () => {
         const value = State.valueOf(control, parts.typed.value);
         parts.typed.setAttribute("aria-invalid", String(value === undefined));
+        const whole = control.kind === "count" ? "a whole number" : "a number", unit = control.unit ? ` in ${control.unit}` : "";
+        parts.wrong.textContent = value === undefined ? `expected ${whole}${unit}, got ${parts.typed.value}` : "";
         if (value !== undefined) this.state.move(control.path, value);
       });
     }
@@ -70,6 +75,7 @@ const Sliders = (() => {
           if (document.activeElement !== parts.typed || parts.typed.getAttribute("aria-invalid") !== "true") {
             parts.typed.value = said;
             parts.typed.removeAttribute("aria-invalid");
+            parts.wrong.textContent = "";
           }
           for (const input of [parts.slider, parts.typed]) input.disabled = lossless && ["slab.rho_m.im", "slab.delta_rho"].includes(path);
         }
