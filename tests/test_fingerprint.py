@@ -1,6 +1,7 @@
 """What makes two questions the same study: equal parts for equal questions, different ones for different answers."""
 
 import functools
+import linecache
 
 import numpy as np
 import pandas as pd
@@ -75,6 +76,16 @@ def test_code_without_source_is_its_instructions():
     same, again, different = (parts_of(space["question"]) for space in names)
     assert same == again
     assert same != different
+
+
+def test_a_text_of_another_program_is_no_source(monkeypatch):
+    """Python 3.13 keeps the program of `python -c` under the name that executed texts have, too."""
+    monkeypatch.setitem(linecache.cache, "<string>", (9, None, ["def question(v): return 7\n"], "<string>"))
+    names = [{}, {}]
+    for space, text in zip(names, ("v + 1", "v + 2"), strict=True):
+        exec(f"def question(v): return {text}\nshort = lambda v: {text}", space)
+    for name in ("question", "short"):
+        assert parts_of(names[0][name]) != parts_of(names[1][name])
 
 
 def test_objects_and_partials():

@@ -90,9 +90,15 @@ def _globals_of(code: types.CodeType) -> set[str]:
     return names.union(*(_globals_of(inner) for inner in code.co_consts if isinstance(inner, types.CodeType)))
 
 
+#: Names that many texts have: from Python 3.13 on, what is looked up under them is the program of ``python -c``, whatever was executed.
+SHARED_NAMES = ("<string>", "<stdin>")
+
+
 def source_of(value: types.FunctionType | type) -> str:
     """The source without comments and layout; of a lambda its body; the instructions where there is no source."""
     try:
+        if isinstance(value, types.FunctionType) and value.__code__.co_filename in SHARED_NAMES:
+            raise OSError("no source")
         if value.__name__ == "<lambda>" and isinstance(value, types.FunctionType):
             return _body_of_lambda(value.__code__)
         return ast.unparse(ast.parse(textwrap.dedent(inspect.getsource(value))))
