@@ -27,7 +27,7 @@ class SpaceCase(NamedTuple):
 
     kind: str
     slab: bp.Slab
-    beam: bp.GaussianBeam
+    beam: Any
     frequency: float
     x: np.ndarray
     y: np.ndarray

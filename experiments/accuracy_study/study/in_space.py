@@ -14,19 +14,21 @@ import xarray as xr
 import beamprop as bp
 
 from ..case import SpaceCase
-from ..cases.in_space import KINDS, space_case
+from ..cases.in_space import KINDS, space_case, volume_of
 from ..reference import in_space
 from .comparison import REFUSAL, error_of, in_processes
 
+SOURCES = ("GaussianBeam", "Piston", "Bowl", "Array")
 
-def answer(case: SpaceCase) -> tuple[Any, dict[str, Any]]:
-    """The package's field, if it gives one, and what it said."""
+
+def answer(case: SpaceCase, z: np.ndarray) -> tuple[Any, dict[str, Any]]:
+    """The package's field on planes z, if it gives one, and what it said."""
     row: dict[str, Any] = {"status": "answered", "reason": "", "warned": False}
     ds, start = None, time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            ds = bp.field(case.slab, case.beam, case.frequency, case.x, case.z, y=case.y, rtol=case.rtol)
+            ds = bp.field(case.slab, case.beam, case.frequency, case.x, z, y=case.y, rtol=case.rtol)
         except ValueError as error:
             row |= {"status": "refused" if REFUSAL.match(str(error)) else "crashed", "reason": str(error)[:90]}
         except Exception as error:  # a crash is a finding, not the study's end
@@ -41,10 +43,13 @@ def answer(case: SpaceCase) -> tuple[Any, dict[str, Any]]:
 def compare_in_space(number: int) -> dict[str, Any]:
     """One case: the package's answer, its promise, and the truth."""
     case = space_case(number)
-    ds, said = answer(case)
+    z = volume_of(number, case)
+    ds, said = answer(case, z)
     row = {
         "number": number,
         "kind": case.kind,
+        "source": type(case.beam).__name__,
+        "volume": z.size > case.z.size,
         "rtol": case.rtol,
         "error": np.nan,
         "estimate": np.nan,
@@ -57,7 +62,7 @@ def compare_in_space(number: int) -> dict[str, Any]:
         reference = in_space.truth(case)
     if isinstance(reference, str):
         return row | {"status": "no truth", "reason": reference}
-    row["error"], row["truth_error"] = error_of(ds.p.values.reshape(case.z.size, -1), reference)
+    row["error"], row["truth_error"] = error_of(ds.p.values.reshape(z.size, -1)[np.searchsorted(z, case.z)], reference)
     return row
 
 
@@ -77,8 +82,10 @@ def summary(ds: xr.Dataset) -> str:
         "| class | cases | refused | crashed | warned | without truth | compared | rtol broken | estimate < error/3 | worst error/rtol | median s |"
     ]
     lines.append("|---" * 11 + "|")
-    for kind in [*KINDS, "all"]:
-        rows = (ds.kind.values == kind) | (kind == "all")
+    kinds = {kind: ds.kind.values == kind for kind in KINDS}
+    kinds |= {source: ds.source.values == source for source in SOURCES}
+    kinds |= {"volumes": ds.volume.values.astype(bool), "all": np.ones(status.shape, bool)}
+    for kind, rows in kinds.items():
         if not rows.any():
             continue
         counts = [
@@ -98,7 +105,7 @@ def summary(ds: xr.Dataset) -> str:
         if broken[i] or sure[i] or warned[i] or status[i] != "answered" or ds.reason.values[i]:
             of = {name: ds[name].values[i] for name in ds}
             lines.append(
-                f"{number:5d} {of['kind']}: {of['status']}{', warned' if warned[i] else ''}; error {of['error']:.1e}, estimate "
+                f"{number:5d} {of['kind']}, {of['source']}: {of['status']}{', warned' if warned[i] else ''}; error {of['error']:.1e}, estimate "
                 f"{of['estimate']:.1e}, rtol {of['rtol']:.1e}, truth to {of['truth_error']:.0e}; {re.sub('[0-9.]{6,}', '#', str(of['reason']))}"
             )
     return "\n".join(lines)
