@@ -25,8 +25,8 @@ def test_ever_wider_ellipses_tend_to_the_beam_on_which_nothing_depends_on_y():
         apart.append(largest(bp.field(LOSSY, beam, FREQUENCY, x, z, y=0.0, rtol=1e-9).p.values, flat))
     ratios = np.array(apart[:-1]) / apart[1:]
     print(apart, ratios)
-    assert ratios[0] == pytest.approx(4, abs=0.15)
-    assert ratios[1] == pytest.approx(4, abs=0.05)
+    assert ratios[0] == pytest.approx(4, abs=0.01)
+    assert ratios[1] == pytest.approx(4, abs=0.002)
 
 
 def test_fields_tend_to_the_lossless_one_in_proportion_to_the_loss():
@@ -40,13 +40,13 @@ def test_fields_tend_to_the_lossless_one_in_proportion_to_the_loss():
 
     lossless = p(0.0)
     apart = [largest(p(loss), lossless) for loss in (1e-4, 1e-5, 1e-6)]
-    assert apart[0] / apart[1] == pytest.approx(10, abs=0.1)
-    assert apart[1] / apart[2] == pytest.approx(10, abs=0.02)
+    assert apart[0] / apart[1] == pytest.approx(10, abs=0.05)
+    assert apart[1] / apart[2] == pytest.approx(10, abs=0.005)
 
 
 @pytest.mark.parametrize("azimuth", [90.0, 180.0, 270.0, -90.0])
 def test_turned_by_quarters_a_field_is_the_same(azimuth):
-    """A beam with its widths swapped, on axes swapped or reversed."""
+    """A beam with its widths swapped, on axes swapped or reversed: the same numbers are summed in another order."""
     x, y, z = np.linspace(-0.6, 0.5, 9), np.linspace(-0.3, 0.7, 9), np.array([0.3, 1.0])
     p = bp.field(LOSSY, bp.GaussianBeam((0.2, 0.1), 30, z0=-0.1), FREQUENCY, x, z, y=y, rtol=1e-11).p.values
     quarters = round(azimuth / 90) % 4
@@ -54,18 +54,18 @@ def test_turned_by_quarters_a_field_is_the_same(azimuth):
     turned = {1: (-y, x), 2: (-x, -y), 3: (y, -x)}[quarters]  # where the positions have been turned to
     beam = bp.GaussianBeam(widths, 30, z0=-0.1, azimuth=azimuth)
     q = bp.field(LOSSY, beam, FREQUENCY, turned[0], z, y=turned[1], rtol=1e-11).p.values
-    assert largest(np.swapaxes(q, 1, 2) if quarters % 2 else q, p) < 1e-12
+    assert largest(np.swapaxes(q, 1, 2) if quarters % 2 else q, p) < 1e-14
 
 
 def test_a_circular_beam_is_the_same_at_every_azimuth():
-    """At positions turned with it, on a line through its middle: rounding alone, which exp(depth L) magnifies."""
+    """At positions turned with it, on a line through its middle: lattices, tables and L differ. Rounding alone, which exp(depth L) magnifies."""
     r, z = np.linspace(-0.6, 0.6, 9), np.array([0.3, 1.0])
     p = bp.field(LOSSY, bp.GaussianBeam(0.096, 30, z0=-0.1), FREQUENCY, r, z, y=0.0, rtol=1e-12).p.values
     turn = np.radians(37.0)
     x, y = r * np.cos(turn), r * np.sin(turn)
     beam = bp.GaussianBeam(0.096, 30, z0=-0.1, azimuth=37.0)
     q = bp.field(LOSSY, beam, FREQUENCY, x, z, y=y, rtol=1e-12).p.values
-    assert largest(np.diagonal(q, axis1=1, axis2=2), p) < 1e-12
+    assert largest(np.diagonal(q, axis1=1, axis2=2), p) < 1e-13
 
 
 def test_where_it_is_does_not_matter():

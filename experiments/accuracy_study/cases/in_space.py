@@ -15,8 +15,8 @@ from .slabs import C_AIR, SLABS, WATER, fluid_like_air, log_uniform, random_loss
 
 SEED = 20250301
 Rng = np.random.Generator
-#: Planes of a volume beside a case's own: enough for a low rank.
-VOLUME = 60
+#: Planes of a volume beside a case's own: from 200 on, and 64 positions, it is made from planes of low rank.
+VOLUME = 200
 
 
 def _different_layers(rng: Rng, lam: float) -> bp.Slab:
@@ -162,9 +162,10 @@ def space_case(number: int) -> SpaceCase:
     return SpaceCase(kind, slab, drawn.beam, frequency, x, y, z, float(10 ** rng.uniform(-11, -3)))
 
 
-def volume_of(number: int, case: SpaceCase) -> np.ndarray:
-    """z that are requested; for one case in five a volume of many planes, the case's own among them."""
+def requested(number: int, case: SpaceCase) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """x, y and z that are requested; for one case in five a volume of many planes, the case's own among them."""
     if number % 5 != 1:
-        return case.z
-    more = np.random.default_rng([SEED, number, 1]).uniform(case.z.min(), case.z.max(), VOLUME)
-    return np.union1d(case.z, more)
+        return case.x, case.y, case.z
+    rng = np.random.default_rng([SEED, number, 1])
+    x, y = (np.union1d(v, v.mean() + max(float(np.ptp(v)), 1e-3) * np.linspace(-0.5, 0.5, 9)) for v in (case.x, case.y))
+    return x, y, np.union1d(case.z, rng.uniform(case.z.min(), case.z.max(), VOLUME))

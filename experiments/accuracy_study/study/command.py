@@ -32,7 +32,9 @@ def arguments(text: str) -> argparse.Namespace:
         "--class", dest="kind", action="append", choices=[*KINDS, "all"], help="cases of this class alone"
     )
     parser.add_argument("--count", type=int, default=40, help="how many of each class")
-    parser.add_argument("--skip", type=int, default=0, help="how many of each class to pass over first")
+    parser.add_argument(
+        "--skip", type=int, default=0, help="how many of each class, or in three dimensions, to pass over"
+    )
     parser.add_argument("--case", type=int, action="append", help="the case of this number alone")
     parser.add_argument("--space", type=int, metavar="COUNT", help="so many fields in three dimensions alone")
     parser.add_argument("--terms", action="store_true", help="whether every term of the error estimate is needed")

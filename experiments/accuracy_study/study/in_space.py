@@ -14,21 +14,21 @@ import xarray as xr
 import beamprop as bp
 
 from ..case import SpaceCase
-from ..cases.in_space import KINDS, space_case, volume_of
+from ..cases.in_space import KINDS, requested, space_case
 from ..reference import in_space
 from .comparison import REFUSAL, error_of, in_processes
 
 SOURCES = ("GaussianBeam", "Piston", "Bowl", "Array")
 
 
-def answer(case: SpaceCase, z: np.ndarray) -> tuple[Any, dict[str, Any]]:
-    """The package's field on planes z, if it gives one, and what it said."""
+def answer(case: SpaceCase, grid: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[Any, dict[str, Any]]:
+    """The package's field at (x, y, z) of a grid, if it gives one, and what it said."""
     row: dict[str, Any] = {"status": "answered", "reason": "", "warned": False}
-    ds, start = None, time.perf_counter()
+    (x, y, z), ds, start = grid, None, time.perf_counter()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            ds = bp.field(case.slab, case.beam, case.frequency, case.x, z, y=case.y, rtol=case.rtol)
+            ds = bp.field(case.slab, case.beam, case.frequency, x, z, y=y, rtol=case.rtol)
         except ValueError as error:
             row |= {"status": "refused" if REFUSAL.match(str(error)) else "crashed", "reason": str(error)[:90]}
         except Exception as error:  # a crash is a finding, not the study's end
@@ -43,8 +43,8 @@ def answer(case: SpaceCase, z: np.ndarray) -> tuple[Any, dict[str, Any]]:
 def compare_in_space(number: int) -> dict[str, Any]:
     """One case: the package's answer, its promise, and the truth."""
     case = space_case(number)
-    z = volume_of(number, case)
-    ds, said = answer(case, z)
+    x, y, z = grid = requested(number, case)
+    ds, said = answer(case, grid)
     row = {
         "number": number,
         "kind": case.kind,
@@ -62,7 +62,9 @@ def compare_in_space(number: int) -> dict[str, Any]:
         reference = in_space.truth(case)
     if isinstance(reference, str):
         return row | {"status": "no truth", "reason": reference}
-    row["error"], row["truth_error"] = error_of(ds.p.values.reshape(z.size, -1)[np.searchsorted(z, case.z)], reference)
+    own = np.ix_(*(np.searchsorted(v, of) for v, of in ((z, case.z), (y, case.y), (x, case.x))))
+    p = ds.p.values.reshape(z.size, y.size, x.size)[own].reshape(case.z.size, -1)
+    row["error"], row["truth_error"] = error_of(p, reference)
     return row
 
 
