@@ -233,39 +233,15 @@ def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray) -> State:
 
 
 def _plate(y: Basis) -> RunMatrix:
-    """One layer in closed form; where it is thin, from its matrix less 1."""
-    thick = None if y.thin.all() else _thick_plate(y)
-    if not y.thin.any():
-        assert thick is not None
-        return thick
-    f = y.less
-    assert f is not None
-    divisor = -f.qp[3]
-    thin = RunMatrix(
-        divisor * f.pp[0] + f.pp[1] * f.qp[2],
-        divisor * f.pq[0] + f.pp[1] * f.qq[2],
-        divisor * f.qp[0] + f.qp[1] * f.qp[2],
-        divisor * f.qq[0] + f.qp[1] * f.qq[2],
-        divisor,
-        np.zeros(divisor.shape),
-        np.zeros(divisor.shape),
-    )
-    if thick is None:
-        return thin
-    return RunMatrix(*(np.where(y.thin, a, b) for a, b in zip(thin, thick, strict=True)))
-
-
-def _thick_plate(y: Basis) -> RunMatrix:
-    """n11 = n22 = A ca S_b + B a^2 S_a cb, n21 = a^2 S_a S_b, n12 = 2 A B (ca cb - 1) - (A^2 + B^2 a^2 b^2) S_a S_b, D = A S_b + B a^2 S_a."""
-    A, B = (1 - y.e) ** 2 * y.rho, y.m * y.m / y.rho
-    gp, gs = y.growth_p, y.growth_s
-    log = np.maximum(gp, gs)
-    first, second = A * y.sin_s, B * y.a2 * y.sin_p
-    divisor = first * np.exp(gs - log) + second * np.exp(gp - log)
-    still = (gp == 0) & (gs == 0)
-    grown = y.cos_p * first + second * y.cos_s - divisor * np.exp(log - gp - gs)
-    diagonal = np.where(still, y.calm_p * first + second * y.calm_s, grown)
-    both = y.sin_p * y.sin_s
-    cosines = np.where(still, y.calm_p * y.cos_s + y.calm_s, y.cos_p * y.cos_s - np.exp(-gp - gs))
-    n12 = 2 * A * B * cosines - (A * A + B * B * y.a2 * y.b2) * both
-    return RunMatrix(diagonal, -n12, -y.a2 * both, diagonal, divisor, log, gp + gs - log)
+    """One layer in closed form: its matrix is made of what the symmetric and the antisymmetric waves do over half of it."""
+    w, f, e, k2 = y.waves, y.products, y.e, y.kx * y.kx
+    odd = 2 * y.rho * (f.sin_cos + 2 * k2 * (2 - e) * f.sigma)
+    even = 2 * y.rho * (f.cos_sin - 2 * e * (f.cos_sin - y.eta * f.sin_cos - k2 * f.sigma))
+    sines = 2 * y.a2 * f.sin_sin
+    shear = w.cos_s * w.sin_s
+    rest = shear - y.eta * w.cos_p * w.sin_p - k2 * (w.sin_ps * w.cos_p + w.cos_ps * w.sin_s)
+    divisor = 2 * y.rho * (shear - 2 * e * rest)
+    diagonal = -sines * odd
+    zero = np.zeros(divisor.shape)
+    log, growth = (zero if g is None else 2 * g for g in (w.growth, f.growth))
+    return RunMatrix(diagonal, odd * even, -2 * sines * f.cos_cos, diagonal, divisor, log, growth - log)
