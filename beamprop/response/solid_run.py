@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media.solids import SolidBlock
+from ..media.solids import SolidBlock, SolidLayers
 from .layer import State
+from .solid_layer import Basis, basis
 from .solid_power import block_back
-from .solids import Basis, Minors, Vector, basis, minors_back, of_fluid, to_fluid, vector_back
+from .solids import Minors, Vector, minors_back, of_fluid, to_fluid, vector_back
 
 #: Logarithm of a divisor of exactly 0: nothing passes.
 NOTHING = -1e5
@@ -57,10 +58,10 @@ def run_back(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, far
         whole = m.divisor * np.exp(-m.growth)
         p = whole * far.p + (m.f22 * far.p - m.f12 * far.q)
         q = whole * far.q + (m.f11 * far.q - m.f21 * far.p)
-        return _in_size(p, q, far.log + m.growth - logarithm(m.divisor))
+        return _in_size(p, q, far.log + m.growth, m.divisor)
     (near,), (v,) = through(run, omega, kx, (of_fluid(far.p, far.q, far.log),), (_clamped(omega, kx),))
     p, q = to_fluid(near)
-    return _in_size(p, q, near.log - logarithm(v.T) - v.log)
+    return _in_size(p, q, near.log - v.log, v.T)
 
 
 def run_divisor(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
@@ -200,6 +201,10 @@ def _single(run: tuple[SolidBlock, ...]) -> bool:
     return len(run) == 1 and run[0].periods == 1 and run[0].layers.thickness.size == 1
 
 
+#: Layers ahead among which a like one is looked for: so many are kept at most.
+ALIKE = 4
+
+
 def through(
     run: tuple[SolidBlock, ...],
     omega: np.ndarray,
@@ -213,10 +218,23 @@ def through(
             minors = tuple(block_back(block, omega, kx, m) for m in minors)
             vectors = tuple(block_back(block, omega, kx, v) for v in vectors)
             continue
-        for j in reversed(range(block.layers.thickness.size)):
-            y = basis(block.layers, j, omega, kx)
-            minors, vectors = tuple(minors_back(m, y) for m in minors), tuple(vector_back(v, y) for v in vectors)
+        for j, y in _layers_back(block.layers, omega, kx):
+            # the size is taken out now and then, and wherever a layer may change it by much
+            sized = j % 8 == 0 or not y.thin
+            minors = tuple(minors_back(m, y, sized) for m in minors)
+            vectors = tuple(vector_back(v, y, sized) for v in vectors)
     return minors, vectors
+
+
+def _layers_back(layers: SolidLayers, omega: np.ndarray, kx: np.ndarray) -> Iterator[tuple[int, Basis]]:
+    """Layers from the far side on; what is made of a layer serves for its like among the next, as in a lattice."""
+    keys = [tuple(v[j].tobytes() for v in layers) for j in range(layers.thickness.size)]
+    made: dict[tuple, Basis] = {}
+    for j in reversed(range(len(keys))):
+        y = made.pop(keys[j]) if keys[j] in made else basis(layers, j, omega, kx)
+        if keys[j] in keys[max(0, j - ALIKE) : j]:
+            made[keys[j]] = y
+        yield j, y
 
 
 def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
@@ -225,16 +243,23 @@ def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
     return Vector(zero, zero + 1, zero, zero, zero.real)
 
 
-def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray) -> State:
+def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray, divisor: np.ndarray) -> State:
+    """A state over a divisor, with its size taken out; in real logarithms, which take a tenth of the time of complex ones."""
     size = np.abs(p) + np.abs(q)
     usual = (size > 0) & np.isfinite(size)
     size = size if usual.all() else np.where(usual, size, 1.0)
-    return State(p / size, q / size, log + np.log(size))
+    length, nothing = np.abs(divisor), divisor == 0
+    if nothing.any():
+        length, divisor = np.where(nothing, 1.0, length), np.where(nothing, 1.0, divisor)
+        log = log - np.where(nothing, NOTHING, 0.0)
+    scale = np.conj(divisor) / length * (1 / size)
+    return State(p * scale, q * scale, log + np.log(size / length))
 
 
 def _plate(y: Basis) -> RunMatrix:
     """One layer in closed form: its matrix is made of what the symmetric and the antisymmetric waves do over half of it."""
-    w, f, e, k2 = y.waves, y.products, y.e, y.kx * y.kx
+    w, f, k2 = y.waves, y.products, y.k2
+    e = k2 * (2 / (y.rho * y.compliance))
     odd = 2 * y.rho * (f.sin_cos + 2 * k2 * (2 - e) * f.sigma)
     even = 2 * y.rho * (f.cos_sin - 2 * e * (f.cos_sin - y.eta * f.sin_cos - k2 * f.sigma))
     sines = 2 * y.a2 * f.sin_sin

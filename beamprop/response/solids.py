@@ -31,20 +31,11 @@ Errors: rounding, times e where a layer is thick and kx beyond kT; there little 
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..media.solids import SolidLayers
-from .layer import SCALE_FROM, entire
-
-#: |a d/2|^2 and |b d/2|^2 up to which divided differences are taken by series.
-THIN = 1.0
-#: |a d/2|^2 up to which a sine over its argument is taken by its series: (exp(iw) - exp(-iw))/w loses digits there.
-SMALL = 0.25
-#: 1 - mu/(rho cL^2) of a solid that is not stable, and has P and S waves alike, at least: what is divided by it keeps half the digits.
-APART = 1e-8
+from .solid_layer import Basis
 
 
 class Minors(NamedTuple):
@@ -76,135 +67,6 @@ class Split(NamedTuple):
     e: np.ndarray
 
 
-class Waves(NamedTuple):
-    """cos and sin/. of P and S waves over half a layer, and (1 - eta) times their divided differences, over exp(growth)."""
-
-    cos_p: np.ndarray
-    sin_p: np.ndarray
-    cos_s: np.ndarray
-    sin_s: np.ndarray
-    cos_ps: np.ndarray
-    sin_ps: np.ndarray
-    growth: np.ndarray | None
-
-
-class Products(NamedTuple):
-    """Products of both waves' functions over half a layer, over exp(growth)."""
-
-    cos_cos: np.ndarray
-    sin_sin: np.ndarray
-    sin_cos: np.ndarray
-    cos_sin: np.ndarray
-    sigma: np.ndarray  # (1 - eta) (sin_cos - cos_sin)/(a^2 - b^2)
-    growth: np.ndarray | None
-
-
-class Basis(NamedTuple):
-    """A layer at w and kx: what states are carried through it by."""
-
-    rho: np.ndarray
-    eta: np.ndarray
-    compliance: np.ndarray  # w^2/mu
-    stiffness: np.ndarray  # w^2/L
-    kx: np.ndarray
-    e: np.ndarray
-    a2: np.ndarray
-    b2: np.ndarray
-    waves: Waves
-    products: Products
-    thin: bool  # throughout
-
-
-def basis(layers: SolidLayers, j: int, omega: np.ndarray, kx: np.ndarray, share: np.ndarray | float = 1.0) -> Basis:
-    """`share` of layer j at omega (F, 1) and kx (F, n)."""
-    rho, modulus, mu = (v[j][:, None] for v in (layers.density, layers.longitudinal_modulus, layers.shear_modulus))
-    modulus = np.where(np.abs(1 - mu / modulus) < APART, modulus * (1 + APART), modulus)
-    half = np.asarray(layers.thickness[j] * share) / 2
-    w2, k2 = omega * omega, kx * kx
-    eta, compliance = mu / modulus, w2 / mu
-    kT2 = rho * compliance
-    a2, b2 = w2 * rho / modulus - k2, kT2 - k2
-    functions = _functions(a2 * (half * half), b2 * (half * half), half, 1 - eta, kT2)
-    return Basis(rho, eta, compliance, w2 / modulus, kx, k2 * (2 / kT2), a2, b2, *functions)
-
-
-def _functions(
-    ua: np.ndarray, ub: np.ndarray, half: np.ndarray, apart: np.ndarray, kT2: np.ndarray
-) -> tuple[Waves, Products, bool]:
-    """The functions of half a layer of squared phases ua and ub, apart = 1 - eta: a^2 - b^2 = -kT^2 apart."""
-    size_p, size_s = np.abs(ua), np.abs(ub)
-    thin = (size_p < THIN) & (size_s < THIN)
-    if thin.all():
-        size = max(float(size_p.max(initial=0.0)), float(size_s.max(initial=0.0)))
-        return _thin_functions(_series(ua, ub, size), half, apart, kT2)
-    (cos_p, sin_p, growth_p), (cos_s, sin_s, growth_s) = _wave(ua, size_p), _wave(ub, size_s)
-    sin_p, sin_s, over = sin_p * half, sin_s * half, -1 / kT2
-    sin_cos, cos_sin = sin_p * cos_s, cos_p * sin_s
-    products = Products(cos_p * cos_s, sin_p * sin_s, sin_cos, cos_sin, (sin_cos - cos_sin) * over, None)
-    growth = None
-    if growth_p is not None or growth_s is not None:
-        growth_p, growth_s = (np.zeros(ua.shape) if g is None else g for g in (growth_p, growth_s))
-        growth, products = np.maximum(growth_p, growth_s), products._replace(growth=growth_p + growth_s)
-        p, s = np.exp(growth_p - growth), np.exp(growth_s - growth)
-        cos_p, sin_p, cos_s, sin_s = p * cos_p, p * sin_p, s * cos_s, s * sin_s
-    waves = Waves(cos_p, sin_p, cos_s, sin_s, (cos_p - cos_s) * over, (sin_p - sin_s) * over, growth)
-    if thin.any():
-        at = (np.broadcast_to(v, thin.shape)[thin] for v in (half, apart, kT2))
-        calm, both, _ = _thin_functions(_series(ua[thin], ub[thin], THIN), *at)
-        waves.cos_ps[thin], waves.sin_ps[thin], products.sigma[thin] = calm.cos_ps, calm.sin_ps, both.sigma
-    return waves, products, False
-
-
-def _wave(u: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-    """exp(-growth) times cos(sqrt u) and sin(sqrt u)/sqrt u: `entire` where they grow, else by a single exponential."""
-    w = np.sqrt(u) if np.isfinite(size).all() else u
-    if not np.abs(w.imag).max() < SCALE_FROM:
-        f = entire(u)
-        return f.a + f.c, f.s, f.growth
-    small = size < SMALL
-    up = np.exp(1j * w)
-    down = 1 / up
-    w[small] = 1
-    s = (up - down) / w
-    s *= -0.5j
-    if small.any():
-        s[small] = _series(u[small], u[small], SMALL)[1]
-    up += down
-    up *= 0.5
-    return up, s, None
-
-
-def _thin_functions(
-    series: tuple[np.ndarray, ...], half: np.ndarray, apart: np.ndarray, kT2: np.ndarray
-) -> tuple[Waves, Products, bool]:
-    cos_s, sin_s, cos_ps, sin_ps = series
-    sin_s, step = half * sin_s, half * half * apart
-    cos_ps, sin_ps = step * cos_ps, step * half * sin_ps
-    cos_p, sin_p = cos_s - kT2 * cos_ps, sin_s - kT2 * sin_ps
-    sigma = sin_ps * cos_s - cos_ps * sin_s
-    products = Products(cos_p * cos_s, sin_p * sin_s, sin_p * cos_s, cos_p * sin_s, sigma, None)
-    return Waves(cos_p, sin_p, cos_s, sin_s, cos_ps, sin_ps, None), products, True
-
-
-def _series(u: np.ndarray, v: np.ndarray, size: float) -> tuple[np.ndarray, ...]:
-    """f(v) = cos sqrt v and sin(sqrt v)/sqrt v, and (f(u) - f(v))/(u - v) of both, by their series: |u|, |v| <= size <= THIN."""
-    # the first of the divided difference that is left out, over 1/2!
-    count = next(n for n in range(1, 20) if 2 * (n + 1) * size**n < 3e-17 * math.factorial(2 * n + 2))
-    values, differences = [], []
-    for first in (0, 1):
-        coefficients = [(-1) ** n / math.factorial(2 * n + first) for n in range(count + 1)]
-        value, difference = coefficients[-1] * v, np.full(np.shape(v), coefficients[-1], complex)
-        value += coefficients[-2]
-        for c in reversed(coefficients[:-2]):
-            difference *= u
-            difference += value
-            value *= v
-            value += c
-        values.append(value)
-        differences.append(difference)
-    return *values, *differences
-
-
 # --- minors ----------------------------------------------------------------------------------------------------
 
 
@@ -219,32 +81,53 @@ def to_fluid(minors: Minors) -> tuple[np.ndarray, np.ndarray]:
     return minors.q12, minors.b
 
 
-def minors_back(far: Minors, y: Basis) -> Minors:
-    """Carry minors back through a layer."""
-    f, eta, e_rho = y.products, y.eta, y.rho * y.e
-    c, sigma = f.cos_cos, f.sigma * (1 / (1 - eta))
-    ac, bc, a_sigma, b_sigma = y.a2 * f.sin_sin, y.b2 * f.sin_sin, y.a2 * sigma, y.b2 * sigma
-    s = f.cos_sin + a_sigma
-    lateral, coupling = e_rho * (2 * (1 - eta)) - y.rho, 1 - 2 * eta
-    a, b, q11, q12, q21 = far[:5]
-    turn = 2 * y.kx * q11
-    da = y.compliance * q12 - y.rho * q21 - turn
-    db = -(y.stiffness * q12 + lateral * q21 + coupling * turn)
-    # twice (a, b) at the middle
-    a_middle = 2 * (c * a + bc * b - s * da - b_sigma * db)
-    b_middle = 2 * (c * b + ac * a - s * db - a_sigma * da)
+def minors_back(far: Minors, y: Basis, sized: bool = True) -> Minors:
+    """Carry minors back through a layer; their size goes into the logarithm if they are to be `sized`."""
+    f, coupling, sigma = y.products, 1 - 2 * y.eta, y.products.sigma * (1 / (1 - y.eta))
+    cosine, a_cosine, b_cosine = f.cos_cos, y.a2 * f.sin_sin, y.b2 * f.sin_sin
+    a_sine, b_sine = y.a2 * sigma, y.b2 * sigma
+    sine = f.cos_sin + a_sine
+    a, b, q11, q12, q21, log = far
+    # a' and -b'; what follows adds in place, for fresh arrays take as long as the sums
+    turn = y.twice_kx * q11
+    rise = y.compliance * q12
+    rise -= y.rho * q21
+    rise -= turn
+    turn *= coupling
+    turn += y.stiffness * q12
+    turn += y.lateral * q21
+    # twice a and b at the middle, about which they are even, and q11, q12 and q21 odd
+    a_middle = cosine * a
+    a_middle += b_cosine * b
+    a_middle -= sine * rise
+    a_middle += b_sine * turn
+    a_middle += a_middle
+    b_middle = cosine * b
+    b_middle += a_cosine * a
+    b_middle += sine * turn
+    b_middle -= a_sine * rise
+    b_middle += b_middle
+    a_sum = sine * a_middle
+    a_sum += b_sine * b_middle
+    b_sum = sine * b_middle
+    b_sum += a_sine * a_middle
     if f.growth is not None:
         a, b, q11, q12, q21 = (v * np.exp(-2 * f.growth) for v in (a, b, q11, q12, q21))
-    a_sum, b_sum = s * a_middle + b_sigma * b_middle, s * b_middle + a_sigma * a_middle
-    near = Minors(
-        c * a_middle + bc * b_middle - a,
-        c * b_middle + ac * a_middle - b,
-        q11 - y.kx * (coupling * a_sum + b_sum),
-        q12 - (lateral * a_sum + y.rho * b_sum),
-        q21 - (y.stiffness * a_sum - y.compliance * b_sum),
-        far.log if f.growth is None else far.log + 2 * f.growth,
-    )
-    return normalised(near)
+        log = log + 2 * f.growth
+    near_a = cosine * a_middle
+    near_a += b_cosine * b_middle
+    near_a -= a
+    near_b = cosine * b_middle
+    near_b += a_cosine * a_middle
+    near_b -= b
+    q12 = q12 - y.lateral * a_sum
+    q12 -= y.rho * b_sum
+    q21 = q21 - y.stiffness * a_sum
+    q21 += y.compliance * b_sum
+    a_sum *= coupling
+    a_sum += b_sum
+    near = Minors(near_a, near_b, q11 - y.kx * a_sum, q12, q21, log)
+    return normalised(near) if sized else near
 
 
 def normalised(minors: Minors) -> Minors:
@@ -275,33 +158,58 @@ def from_waves(n: tuple[np.ndarray, ...], x: np.ndarray | float, y: Split, log: 
 # --- one solution ----------------------------------------------------------------------------------------------
 
 
-def vector_back(v: Vector, y: Basis) -> Vector:
-    """Carry one solution back through a layer."""
-    f, k, coupling = y.waves, y.kx, y.kx * (1 - 2 * y.eta)
-    e_rho = y.rho * y.e
-    lateral, shear = e_rho * (2 * (1 - y.eta)) - y.rho, e_rho - y.rho
-    p, X, q, T = v[:4]
-    dq, dT = coupling * X - y.stiffness * p, coupling * p + lateral * X
+def vector_back(v: Vector, y: Basis, sized: bool = True) -> Vector:
+    """Carry one solution back through a layer; its size as in `minors_back`."""
+    f, k, coupling, shear = y.waves, y.kx, y.kx * (1 - 2 * y.eta), y.k2 * (2 / y.compliance)
+    shear -= y.rho
+    p, X, q, T, log = v
+    dq = coupling * X
+    dq -= y.stiffness * p
+    dT = coupling * p
+    dT += y.lateral * X
     # B A + b^2 is of rank 1: -(1 - eta) (w^2/mu, 2 k) times (shear, -k)
-    turn = f.cos_ps * (shear * q - k * T) - f.sin_ps * (shear * dq - k * dT)
-    # twice (q, T) at the middle
-    q_middle = 2 * (f.cos_s * q - f.sin_s * dq + y.compliance * turn)
-    T_middle = 2 * (f.cos_s * T - f.sin_s * dT + 2 * k * turn)
-    turn = shear * q_middle - k * T_middle
-    cosine, sine = f.cos_ps * turn, f.sin_ps * turn
-    q_sum, T_sum = f.sin_s * q_middle + y.compliance * sine, f.sin_s * T_middle + 2 * k * sine
+    turn = f.cos_ps * _turn(shear, q, k, T)
+    turn -= f.sin_ps * _turn(shear, dq, k, dT)
+    # twice q and T at the middle, about which they are even, and p and X odd
+    q_middle = f.cos_s * q
+    q_middle -= f.sin_s * dq
+    q_middle += y.compliance * turn
+    q_middle += q_middle
+    T_middle = f.cos_s * T
+    T_middle -= f.sin_s * dT
+    T_middle += y.twice_kx * turn
+    T_middle += T_middle
+    turn = _turn(shear, q_middle, k, T_middle)
+    sine, cosine = f.sin_ps * turn, f.cos_ps * turn
+    q_sum, T_sum = f.sin_s * q_middle, f.sin_s * T_middle
+    q_sum += y.compliance * sine
+    T_sum += y.twice_kx * sine
     if f.growth is not None:
         p, X, q, T = (c * np.exp(-2 * f.growth) for c in (p, X, q, T))
-    near = (
-        p - (y.rho * q_sum - k * T_sum),
-        X - (y.compliance * T_sum - k * q_sum),
-        f.cos_s * q_middle + y.compliance * cosine - q,
-        f.cos_s * T_middle + 2 * k * cosine - T,
-    )
-    scale, log = _sizes(near)
-    log = log + v.log if f.growth is None else log + v.log + 2 * f.growth
-    p, X, q, T = (c * scale for c in near)
-    return Vector(p, X, q, T, log)
+        log = log + 2 * f.growth
+    q_middle *= f.cos_s
+    q_middle += y.compliance * cosine
+    q_middle -= q
+    T_middle *= f.cos_s
+    T_middle += y.twice_kx * cosine
+    T_middle -= T
+    p = p - y.rho * q_sum
+    p += k * T_sum
+    X = X - y.compliance * T_sum
+    X += k * q_sum
+    near = Vector(p, X, q_middle, T_middle, log)
+    if not sized:
+        return near
+    scale, size = _sizes(near[:4])
+    p, X, q, T = (c * scale for c in near[:4])
+    return Vector(p, X, q, T, near.log + size)
+
+
+def _turn(shear: np.ndarray, q: np.ndarray, k: np.ndarray, T: np.ndarray) -> np.ndarray:
+    """shear q - k T."""
+    out = shear * q
+    out -= k * T
+    return out
 
 
 def vector_of(waves: tuple[Any, ...], y: Split, log: np.ndarray) -> Vector:
