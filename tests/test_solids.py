@@ -63,8 +63,43 @@ def test_a_steel_plate_from_thin_to_thick(fd, kx_over_k0):
         r, t = solid_oracles.response(layers, 1, IN_WATER, IN_WATER, fd * 1e6, kx)
     else:  # nothing comes back from the far face: 1e5 digits would show it, too
         r, t = solid_oracles.by_stiffness(layers, (1000.0, 1480.0), fd * 1e6, kx)
-    assert abs(complex(ds.r) - r) < 1e-11
-    assert abs(t) < 1e-280 or abs(complex(ds.t) / t - 1) < 1e-8
+    assert abs(complex(ds.r) - r) < 1e-13
+    assert abs(t) < 1e-280 or abs(complex(ds.t) / t - 1) < 1e-11
+
+
+@pytest.mark.parametrize("kx_over_k0", [0.3, 1.5, 3 - 0.1j])
+@pytest.mark.parametrize(("thickness", "unlike"), [(1e-5, 0.0), (1e-5, 0.05), (1e-4, 0.05)])
+def test_many_layers_in_contact_agree_with_many_digits(thickness, unlike, kx_over_k0):
+    """Like layers, made once, and unlike ones; those of 0.1 mm grow by e^50 and more together, each by little."""
+    layers = [
+        (*((7900.0, 5900.0, 3200.0), (1200.0, 2600.0, 1150.0))[j % 2], thickness * (1 + unlike * j)) for j in range(21)
+    ]
+    kx = 2 * np.pi * 1e6 / 1480 * kx_over_k0
+    ds = bp.scattering(stack(layers), 1e6, kx=kx)
+    assert worst(ds, *solid_oracles.response(layers, 1, IN_WATER, IN_WATER, 1e6, kx)) < 1e-12
+
+
+def test_a_few_kx_among_many_are_as_alone():
+    """An array in which some are thin and others thick, and one on the P wave's grazing kx."""
+    k0, slab = 2 * np.pi * 1e6 / 1480, stack([(7900.0, 5900.0, 3200.0, 4e-4), (1200.0, 2600.0, 1150.0, 3e-4)])
+    kx = np.r_[np.linspace(0, 6, 301), 1480 / 5900, 1480 / 3200] * k0
+    together = bp.scattering(slab, 1e6, kx=kx)
+    for j in (0, 30, 60, 100, 200, 300, 301, 302):
+        alone = bp.scattering(slab, 1e6, kx=kx[j])
+        assert abs(complex(alone.r) - together.r.values[j]) < 1e-12
+        assert complex(alone.t) == pytest.approx(together.t.values[j], rel=1e-10)
+
+
+def test_p_and_s_waves_alike_are_the_limit_of_nearly_alike_ones():
+    """An unstable solid, for which active=True is asked."""
+    alike, nearly = (
+        bp.scattering(
+            bp.Slab(bp.Layer(bp.Solid(2000.0, c, 2000.0, active=True), 1e-3), background=WATER), 1e6, angle=[20.0, 60.0]
+        )
+        for c in (2000.0, 2000.1)
+    )
+    assert np.isfinite(alike.t.values).all()
+    assert float(abs(alike.t - nearly.t).max()) < 2e-4
 
 
 @pytest.mark.parametrize("periods", [2, 7, 40])
