@@ -80,21 +80,36 @@ def test_many_layers_in_contact_agree_with_many_digits(thickness, unlike, kx_ove
 
 
 def test_a_few_kx_among_many_are_as_alone():
-    """An array in which some are thin and others thick, and one on the P wave's grazing kx."""
-    k0, slab = 2 * np.pi * 1e6 / 1480, stack([(7900.0, 5900.0, 3200.0, 4e-4), (1200.0, 2600.0, 1150.0, 3e-4)])
-    kx = np.r_[np.linspace(0, 6, 301), 1480 / 5900, 1480 / 3200] * k0
-    together = bp.scattering(slab, 1e6, kx=kx)
-    for j in (0, 30, 60, 100, 200, 300, 301, 302):
-        alone = bp.scattering(slab, 1e6, kx=kx[j])
-        assert abs(complex(alone.r) - together.r.values[j]) < 1e-12
-        assert complex(alone.t) == pytest.approx(together.t.values[j], rel=1e-10)
+    """An array in which some are thin and others thick, also where kx is 20 kT; and kx of grazing P and S waves."""
+    slab = stack([(7900.0, 5900.0, 3200.0, 4e-4), (1200.0, 2600.0, 1150.0, 3e-4)])
+    for frequency, largest in ((1e6, 6), (1e4, 300)):
+        kx = np.r_[np.linspace(0, largest, 301), 1480 / 5900, 1480 / 3200] * 2 * np.pi * frequency / 1480
+        together = bp.scattering(slab, frequency, kx=kx)
+        for j in (0, 10, 30, 60, 100, 200, 300, 301, 302):
+            alone = bp.scattering(slab, frequency, kx=kx[j])
+            assert complex(alone.r) == pytest.approx(together.r.values[j], rel=1e-12)
+            assert complex(alone.t) == pytest.approx(together.t.values[j], rel=1e-10, abs=1e-290)
+
+
+def test_hundreds_of_layers_that_grow_by_little_each_do_not_overflow():
+    """e^760 together, each below 2 nepers: their reflection is that of the first ones."""
+    kx = 1.9 / 1e-4
+    r = [
+        complex(
+            bp.scattering(stack([(7900.0, 5900.0, 3200.0, 1e-4), (1200.0, 2600.0, 1150.0, 1e-4)] * n), 1e6, kx=kx).r
+        )
+        for n in (20, 200)
+    ]
+    assert r[0] == pytest.approx(r[1], rel=1e-12)
 
 
 def test_p_and_s_waves_alike_are_the_limit_of_nearly_alike_ones():
     """An unstable solid, for which active=True is asked."""
     alike, nearly = (
         bp.scattering(
-            bp.Slab(bp.Layer(bp.Solid(2000.0, c, 2000.0, active=True), 1e-3), background=WATER), 1e6, angle=[20.0, 60.0]
+            bp.Slab([bp.Layer(bp.Solid(2000.0, c, 2000.0, active=True), d) for d in (4e-4, 6e-4)], background=WATER),
+            1e6,
+            angle=[20.0, 60.0],
         )
         for c in (2000.0, 2000.1)
     )
