@@ -1,5 +1,6 @@
 """Solid layers: plane waves against many digits, against stiffnesses, and against what physics demands."""
 
+import mpmath as mp
 import numpy as np
 import oracles
 import pytest
@@ -220,6 +221,24 @@ def test_backward_leaky_modes_of_a_steel_plate_lie_below_the_axis(fd, backward):
     assert leaky.imag.min() > 0
     if fd == 3.0:
         assert sorted(leaky.real) == pytest.approx([0.22344, 0.24048, 0.43741, 0.51971], abs=1e-5)
+
+
+def test_leaky_modes_far_from_the_axis_are_zeros_of_the_matrices():
+    """A strip of k0/2: (i kz + rho_z d/dz) of the near face, kz continued from the physical sheet, by a secant's step from each mode."""
+    w, k0 = 2 * mp.pi * 3e6, 2 * mp.pi * 3e6 / 1480
+
+    def dispersion(k):
+        kz = mp.sqrt(k0**2 - k**2)
+        near = solid_oracles.plate_back(7900.0, 5900.0, 3200.0, 1e-3, w, k) * mp.matrix([1, 1j * kz / 1000])
+        return 1j * kz * near[0] + 1000 * near[1]
+
+    modes = bp.guided_modes(PLATE, 3e6, strip_over_k0=0.5, leaky=True).kx_over_k0.values
+    far = modes[abs(modes.imag) > 0.1]
+    assert far.size == 2
+    with mp.workdps(40):
+        for k in (mp.mpc(complex(v)) * k0 for v in far):
+            value, beside = dispersion(k), dispersion(k * (1 + mp.mpf(10) ** -12))
+            assert abs(value / (beside - value) * mp.mpf(10) ** -12) < 1e-10
 
 
 # --- beams -----------------------------------------------------------------------------------------------------
