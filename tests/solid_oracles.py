@@ -55,6 +55,11 @@ def _between_fluids(m):
     return out
 
 
+def plate_back(rho, c_l, c_t, d, w, k):
+    """(p, q) in front of a plate from (p, q) behind it."""
+    return _between_fluids(_solid_back(rho, c_l, c_t, d, w, k))
+
+
 def _growth(layers, w, k):
     """Decades by which waves may grow over all layers and back."""
     slow = (layer[2] if len(layer) == 4 else np.sqrt(complex(layer[1] / layer[0])) for layer in layers)

@@ -1,5 +1,6 @@
 """Solid layers: plane waves against many digits, against stiffnesses, and against what physics demands."""
 
+import mpmath as mp
 import numpy as np
 import oracles
 import pytest
@@ -63,8 +64,58 @@ def test_a_steel_plate_from_thin_to_thick(fd, kx_over_k0):
         r, t = solid_oracles.response(layers, 1, IN_WATER, IN_WATER, fd * 1e6, kx)
     else:  # nothing comes back from the far face: 1e5 digits would show it, too
         r, t = solid_oracles.by_stiffness(layers, (1000.0, 1480.0), fd * 1e6, kx)
-    assert abs(complex(ds.r) - r) < 1e-11
-    assert abs(t) < 1e-280 or abs(complex(ds.t) / t - 1) < 1e-8
+    assert abs(complex(ds.r) - r) < 1e-13
+    assert abs(t) < 1e-280 or abs(complex(ds.t) / t - 1) < 1e-11
+
+
+@pytest.mark.parametrize("kx_over_k0", [0.3, 1.5, 3 - 0.1j])
+@pytest.mark.parametrize(("thickness", "unlike"), [(1e-5, 0.0), (1e-5, 0.05), (1e-4, 0.05)])
+def test_many_layers_in_contact_agree_with_many_digits(thickness, unlike, kx_over_k0):
+    """Like layers, made once, and unlike ones; those of 0.1 mm grow by e^50 and more together, each by little."""
+    layers = [
+        (*((7900.0, 5900.0, 3200.0), (1200.0, 2600.0, 1150.0))[j % 2], thickness * (1 + unlike * j)) for j in range(21)
+    ]
+    kx = 2 * np.pi * 1e6 / 1480 * kx_over_k0
+    ds = bp.scattering(stack(layers), 1e6, kx=kx)
+    assert worst(ds, *solid_oracles.response(layers, 1, IN_WATER, IN_WATER, 1e6, kx)) < 1e-12
+
+
+def test_a_few_kx_among_many_are_as_alone():
+    """An array in which some are thin and others thick, also where kx is 20 kT; and kx of grazing P and S waves."""
+    slab = stack([(7900.0, 5900.0, 3200.0, 4e-4), (1200.0, 2600.0, 1150.0, 3e-4)])
+    for frequency, largest in ((1e6, 6), (1e4, 300)):
+        kx = np.r_[np.linspace(0, largest, 301), 1480 / 5900, 1480 / 3200] * 2 * np.pi * frequency / 1480
+        together = bp.scattering(slab, frequency, kx=kx)
+        for j in (0, 10, 30, 60, 100, 200, 300, 301, 302):
+            alone = bp.scattering(slab, frequency, kx=kx[j])
+            assert complex(alone.r) == pytest.approx(together.r.values[j], rel=1e-12)
+            assert complex(alone.t) == pytest.approx(together.t.values[j], rel=1e-10, abs=1e-290)
+
+
+def test_hundreds_of_layers_that_grow_by_little_each_do_not_overflow():
+    """e^760 together, each below 2 nepers: their reflection is that of the first ones."""
+    kx = 1.9 / 1e-4
+    r = [
+        complex(
+            bp.scattering(stack([(7900.0, 5900.0, 3200.0, 1e-4), (1200.0, 2600.0, 1150.0, 1e-4)] * n), 1e6, kx=kx).r
+        )
+        for n in (20, 200)
+    ]
+    assert r[0] == pytest.approx(r[1], rel=1e-12)
+
+
+def test_p_and_s_waves_alike_are_the_limit_of_nearly_alike_ones():
+    """An unstable solid, for which active=True is asked."""
+    alike, nearly = (
+        bp.scattering(
+            bp.Slab([bp.Layer(bp.Solid(2000.0, c, 2000.0, active=True), d) for d in (4e-4, 6e-4)], background=WATER),
+            1e6,
+            angle=[20.0, 60.0],
+        )
+        for c in (2000.0, 2000.1)
+    )
+    assert np.isfinite(alike.t.values).all()
+    assert float(abs(alike.t - nearly.t).max()) < 2e-4
 
 
 @pytest.mark.parametrize("periods", [2, 7, 40])
@@ -170,6 +221,24 @@ def test_backward_leaky_modes_of_a_steel_plate_lie_below_the_axis(fd, backward):
     assert leaky.imag.min() > 0
     if fd == 3.0:
         assert sorted(leaky.real) == pytest.approx([0.22344, 0.24048, 0.43741, 0.51971], abs=1e-5)
+
+
+def test_leaky_modes_far_from_the_axis_are_zeros_of_the_matrices():
+    """A strip of k0/2: (i kz + rho_z d/dz) of the near face, kz continued from the physical sheet, by a secant's step from each mode."""
+    w, k0 = 2 * mp.pi * 3e6, 2 * mp.pi * 3e6 / 1480
+
+    def dispersion(k):
+        kz = mp.sqrt(k0**2 - k**2)
+        near = solid_oracles.plate_back(7900.0, 5900.0, 3200.0, 1e-3, w, k) * mp.matrix([1, 1j * kz / 1000])
+        return 1j * kz * near[0] + 1000 * near[1]
+
+    modes = bp.guided_modes(PLATE, 3e6, strip_over_k0=0.5, leaky=True).kx_over_k0.values
+    far = modes[abs(modes.imag) > 0.1]
+    assert far.size == 2
+    with mp.workdps(40):
+        for k in (mp.mpc(complex(v)) * k0 for v in far):
+            value, beside = dispersion(k), dispersion(k * (1 + mp.mpf(10) ** -12))
+            assert abs(value / (beside - value) * mp.mpf(10) ** -12) < 1e-10
 
 
 # --- beams -----------------------------------------------------------------------------------------------------

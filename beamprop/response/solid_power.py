@@ -7,7 +7,8 @@ from typing import TypeVar
 import numpy as np
 
 from ..media.solids import SolidBlock
-from .solids import Minors, Vector, basis, minors_back, vector_back
+from .solid_layer import basis
+from .solids import Minors, Vector, minors_back, vector_back
 
 Carried = TypeVar("Carried", Minors, Vector)
 

@@ -12,10 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..media.solids import SolidBlock
+from ..media.solids import SolidBlock, SolidLayers
 from .layer import State
+from .solid_layer import Basis, basis
 from .solid_power import block_back
-from .solids import Basis, Minors, Vector, basis, minors_back, of_fluid, to_fluid, vector_back
+from .solids import Minors, Vector, minors_back, of_fluid, to_fluid, vector_back
 
 #: Logarithm of a divisor of exactly 0: nothing passes.
 NOTHING = -1e5
@@ -57,10 +58,10 @@ def run_back(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray, far
         whole = m.divisor * np.exp(-m.growth)
         p = whole * far.p + (m.f22 * far.p - m.f12 * far.q)
         q = whole * far.q + (m.f11 * far.q - m.f21 * far.p)
-        return _in_size(p, q, far.log + m.growth - logarithm(m.divisor))
+        return _in_size(p, q, far.log + m.growth, m.divisor)
     (near,), (v,) = through(run, omega, kx, (of_fluid(far.p, far.q, far.log),), (_clamped(omega, kx),))
     p, q = to_fluid(near)
-    return _in_size(p, q, near.log - logarithm(v.T) - v.log)
+    return _in_size(p, q, near.log - v.log, v.T)
 
 
 def run_divisor(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> np.ndarray:
@@ -200,6 +201,10 @@ def _single(run: tuple[SolidBlock, ...]) -> bool:
     return len(run) == 1 and run[0].periods == 1 and run[0].layers.thickness.size == 1
 
 
+#: Layers ahead among which a like one is looked for: so many are kept at most.
+ALIKE = 4
+
+
 def through(
     run: tuple[SolidBlock, ...],
     omega: np.ndarray,
@@ -213,10 +218,23 @@ def through(
             minors = tuple(block_back(block, omega, kx, m) for m in minors)
             vectors = tuple(block_back(block, omega, kx, v) for v in vectors)
             continue
-        for j in reversed(range(block.layers.thickness.size)):
-            y = basis(block.layers, j, omega, kx)
-            minors, vectors = tuple(minors_back(m, y) for m in minors), tuple(vector_back(v, y) for v in vectors)
+        for j, y in _layers_back(block.layers, omega, kx):
+            # the size is taken out now and then, and wherever a layer may change it by much
+            sized = j % 8 == 0 or not y.thin
+            minors = tuple(minors_back(m, y, sized) for m in minors)
+            vectors = tuple(vector_back(v, y, sized) for v in vectors)
     return minors, vectors
+
+
+def _layers_back(layers: SolidLayers, omega: np.ndarray, kx: np.ndarray) -> Iterator[tuple[int, Basis]]:
+    """Layers from the far side on; what is made of a layer serves for its like among the next, as in a lattice."""
+    keys = [tuple(v[j].tobytes() for v in layers) for j in range(layers.thickness.size)]
+    made: dict[tuple, Basis] = {}
+    for j in reversed(range(len(keys))):
+        y = made.pop(keys[j]) if keys[j] in made else basis(layers, j, omega, kx)
+        if keys[j] in keys[max(0, j - ALIKE) : j]:
+            made[keys[j]] = y
+        yield j, y
 
 
 def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
@@ -225,47 +243,30 @@ def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
     return Vector(zero, zero + 1, zero, zero, zero.real)
 
 
-def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray) -> State:
+def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray, divisor: np.ndarray) -> State:
+    """A state over a divisor, with its size taken out; in real logarithms, which take a tenth of the time of complex ones."""
     size = np.abs(p) + np.abs(q)
     usual = (size > 0) & np.isfinite(size)
     size = size if usual.all() else np.where(usual, size, 1.0)
-    return State(p / size, q / size, log + np.log(size))
+    length, nothing = np.abs(divisor), divisor == 0
+    if nothing.any():
+        length, divisor = np.where(nothing, 1.0, length), np.where(nothing, 1.0, divisor)
+        log = log - np.where(nothing, NOTHING, 0.0)
+    scale = np.conj(divisor) / length * (1 / size)
+    return State(p * scale, q * scale, log + np.log(size / length))
 
 
 def _plate(y: Basis) -> RunMatrix:
-    """One layer in closed form; where it is thin, from its matrix less 1."""
-    thick = None if y.thin.all() else _thick_plate(y)
-    if not y.thin.any():
-        assert thick is not None
-        return thick
-    f = y.less
-    assert f is not None
-    divisor = -f.qp[3]
-    thin = RunMatrix(
-        divisor * f.pp[0] + f.pp[1] * f.qp[2],
-        divisor * f.pq[0] + f.pp[1] * f.qq[2],
-        divisor * f.qp[0] + f.qp[1] * f.qp[2],
-        divisor * f.qq[0] + f.qp[1] * f.qq[2],
-        divisor,
-        np.zeros(divisor.shape),
-        np.zeros(divisor.shape),
-    )
-    if thick is None:
-        return thin
-    return RunMatrix(*(np.where(y.thin, a, b) for a, b in zip(thin, thick, strict=True)))
-
-
-def _thick_plate(y: Basis) -> RunMatrix:
-    """n11 = n22 = A ca S_b + B a^2 S_a cb, n21 = a^2 S_a S_b, n12 = 2 A B (ca cb - 1) - (A^2 + B^2 a^2 b^2) S_a S_b, D = A S_b + B a^2 S_a."""
-    A, B = (1 - y.e) ** 2 * y.rho, y.m * y.m / y.rho
-    gp, gs = y.growth_p, y.growth_s
-    log = np.maximum(gp, gs)
-    first, second = A * y.sin_s, B * y.a2 * y.sin_p
-    divisor = first * np.exp(gs - log) + second * np.exp(gp - log)
-    still = (gp == 0) & (gs == 0)
-    grown = y.cos_p * first + second * y.cos_s - divisor * np.exp(log - gp - gs)
-    diagonal = np.where(still, y.calm_p * first + second * y.calm_s, grown)
-    both = y.sin_p * y.sin_s
-    cosines = np.where(still, y.calm_p * y.cos_s + y.calm_s, y.cos_p * y.cos_s - np.exp(-gp - gs))
-    n12 = 2 * A * B * cosines - (A * A + B * B * y.a2 * y.b2) * both
-    return RunMatrix(diagonal, -n12, -y.a2 * both, diagonal, divisor, log, gp + gs - log)
+    """One layer in closed form: its matrix is made of what the symmetric and the antisymmetric waves do over half of it."""
+    w, f, k2 = y.waves, y.products, y.k2
+    e = k2 * (2 / (y.rho * y.compliance))
+    odd = 2 * y.rho * (f.sin_cos + 2 * k2 * (2 - e) * f.sigma)
+    even = 2 * y.rho * (f.cos_sin - 2 * e * (f.cos_sin - y.eta * f.sin_cos - k2 * f.sigma))
+    sines = 2 * y.a2 * f.sin_sin
+    shear = w.cos_s * w.sin_s
+    rest = shear - y.eta * w.cos_p * w.sin_p - k2 * (w.sin_ps * w.cos_p + w.cos_ps * w.sin_s)
+    divisor = 2 * y.rho * (shear - 2 * e * rest)
+    diagonal = -sines * odd
+    zero = np.zeros(divisor.shape)
+    log, growth = (zero if g is None else 2 * g for g in (w.growth, f.growth))
+    return RunMatrix(diagonal, odd * even, -2 * sines * f.cos_cos, diagonal, divisor, log, growth - log)
