@@ -93,11 +93,8 @@ def widths_in_space(question: SpaceBeams, air_distance: float | None, progress: 
     for i, j in watched(progress, list(itertools.product(*map(range, shape))), "widths"):
         s = sample(slab, float(flat[i]))
         source = question.at_angle(float(angles[j]))
-        after = question.beam.z0 + (4 * math.pi / s.k0 if air_distance is None else air_distance)
-        if has_edge(source) and after <= source.z0:
-            depth = f"more than {source.z0 - question.beam.z0:g} m, behind the source's edge"
-            raise validate.refuse("air_distance", depth, air_distance)
-        measured = space_widths.widths(s, source, level, beams.rtol, (question.beam.z0, after))
+        distance = 4 * math.pi / s.k0 if air_distance is None else air_distance
+        measured = space_widths.widths(s, source, level, beams.rtol, distance)
         worst, corners = worst.worse(measured.budget), max(corners, measured.area.change)
         most = np.maximum(most, measured.crossings.astype(int))
         for name, value in measured.row._asdict().items():

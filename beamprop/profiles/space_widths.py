@@ -51,14 +51,14 @@ class Widths(NamedTuple):
     area: Area
 
 
-def widths(s: SampledSlab, source: Any, level: float, rtol: float, planes: tuple[float, float]) -> Widths:
-    """At one frequency and angle; `planes` are the launch plane and that after the distance without the slab."""
-    z0, after = planes
+def widths(s: SampledSlab, source: Any, level: float, rtol: float, distance: float) -> Widths:
+    """At one frequency and angle; `distance` is that from the launch plane without the slab."""
+    z0 = source.z0
     launch = known_launch(source, level) or _free(s, source, z0, level, rtol)
-    near = launch if source.z0 == 0 else _free(s, source, 0.0, level, rtol)
-    through = driven_by(source, transfer_function.through(s, source.z0))
+    near = launch if z0 == 0 else _free(s, source, 0.0, level, rtol)
+    through = driven_by(source, transfer_function.through(s, z0))
     profile = profile_of(s, source, (through, s.thickness), rtol, EDGE * level)
-    far, air = section(profile, level), _free(s, source, after, level, rtol)
+    far, air = section(profile, level), _free(s, source, z0 + distance, level, rtol)
     area = area_above(profile, far.peak, level, rtol)
     row = SpaceRow(
         fwhm_launch=launch.width,
