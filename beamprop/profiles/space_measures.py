@@ -85,13 +85,13 @@ def reflected_and_transmitted(s: SampledSlab, source: Any, rtol: float, window: 
         Side(transfer_function.reflected(s, z0), -z0 * slope, False),
         Side(transfer_function.through(s, z0), (s.thickness - z0) * slope, True),
     )
-    return [_measure(s, source, side, (launched, _radiated(s, directions, side, rtol)), rtol, window) for side in sides]
+    return [_measure(s, directions, side, launched, rtol, window) for side in sides]
 
 
 def _measure(
-    s: SampledSlab, source: Any, side: Side, powers: tuple[Radiated, Radiated], rtol: float, window: float | None
+    s: SampledSlab, directions: Directions, side: Side, launched: Radiated, rtol: float, window: float | None
 ) -> Measured:
-    """A side's beam; `powers` are what was launched and what radiates to that side."""
+    source = directions.source
     if not any_beam(s, source, side.transfer):
         return Measured(NO_BEAM, uniform_budget(1, 0.0), PowerError(), Area(0.0, 0.0))
     way = driven_by(source, side.transfer), s.thickness
@@ -104,7 +104,7 @@ def _measure(
     half = section(profile, 0.5)
     moments = _in_part(profile) if window is None else _in_window(profile)
     area = area_above(profile, half.peak, 0.5, rtol)
-    launched, radiated = powers
+    radiated = _radiated(s, directions, side, rtol)
     ellipticity, orientation = _principal(moments.matrix)
     divergence, far_angle, far_azimuth = _direction(radiated)
     beamlet = Beamlet(
