@@ -7,7 +7,7 @@ import pytest
 from scipy.special import exp1, j0, jn_zeros, jv
 
 from beamprop.contour.paths import BentPlan, bent_contour
-from beamprop.contour.space import lattice, radial
+from beamprop.contour.space import lattice, radial, sheet
 from beamprop.sources.angles import AngleInterpolation
 from beamprop.sources.in_space import unit_vector
 
@@ -113,3 +113,8 @@ def test_directions_are_exact_at_quarters():
     assert unit_vector(540.0) == (-1.0, 0.0)
     assert unit_vector(30.0) == pytest.approx((math.sqrt(3) / 2, 0.5), abs=1e-15)
     assert unit_vector(-150.0) == pytest.approx((-math.sqrt(3) / 2, -0.5), abs=1e-15)
+
+
+def test_a_spectrum_without_end_stays_so_when_it_is_widened():
+    endless = sheet.Spectrum(np.array([[-np.inf, np.inf], [-np.inf, np.inf]]), 0.0, np.inf)
+    assert np.array_equal(endless.wider(1.5).box, endless.box)

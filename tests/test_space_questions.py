@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import beamprop as bp
+from beamprop.api.widths_of import widths_of
 
 SLAB = bp.Slab(bp.lmmd_cell(), 45)
 ROUND = bp.GaussianBeam(0.096, 20, z0=-0.05)
@@ -57,8 +58,7 @@ def test_widths_along_y_are_taken_of_a_cut():
 @pytest.mark.parametrize("beam", [ELLIPSE, bp.GaussianBeam(0.1, azimuth=10.0), bp.GaussianBeam(0.1, y0=0.1)])
 @pytest.mark.parametrize("ask", [
     lambda beam: bp.field(SLAB, beam, 2500.0, 0.0, 0.1),
-    lambda beam: bp.beam_width(SLAB, beam, 2500.0),
-    lambda beam: bp.beam_measures(SLAB, beam, 2500.0),
+    lambda beam: widths_of([SLAB], [beam], [2500.0]),
     lambda beam: bp.fem.field(SLAB, beam, 2500.0, np.linspace(-1, 1, 11), [0.1], 2.0),
 ])  # fmt: skip
 def test_a_beam_of_three_dimensions_needs_y(beam, ask):

@@ -19,8 +19,8 @@ from ..progress import Progress, watched
 from ..response.sampled_slab import sample
 from ..sources.base import Beam
 from . import checks
+from .space_beams import is_in_space, measures_in_space, space_beams, warn_of_cut_moments
 
-SIDES = ("reflected", "transmitted")
 #: Variables that are positions on x.
 PLACES = ("centroid", "moments_from", "moments_to")
 
@@ -33,6 +33,8 @@ def beam_measures(
     rtol: float = 1e-6,
     progress: Progress = False,
     window: float | None = None,
+    *,
+    azimuth: float | None = None,
 ) -> xr.Dataset:
     """The reflected beam at the near face and the transmitted beam at the far face, measured.
 
@@ -40,6 +42,7 @@ def beam_measures(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
+        In three dimensions a GaussianBeam, Piston, Bowl, SourcePlane or Array.
     frequency : float or 1-D array, Hz
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
@@ -52,6 +55,9 @@ def beam_measures(
         integrals over all of it. For slabs without loss, whose guided waves run along for ever: without them the centroid is
         that of the beam alone, with them it depends on how far one looks. By default the window is widened until |p| falls
         to a hundredth of its peak on both sides.
+    azimuth : float, degree, optional
+        Makes it a question of three dimensions, as a beam of two widths, an azimuth or a y0 and transducers do by themselves; overrides the
+        beam's, the direction of its tilt from x towards y.
 
     Returns
     -------
@@ -72,6 +78,13 @@ def beam_measures(
           behind by the wavenumber of its S waves;
         * `crossings`: how often |p| crosses the half level inside the window; 2 for a plain beam.
 
+        In three dimensions these have a dimension `axis`, "x" and "y", but for `peak`, `power`, `far_angle` and `rim`. Widths by a level are
+        those of cuts through the peak, the `divergence` that of the angles to the planes x = 0 and y = 0, `far_angle` that of the mean direction
+        from the normal. Beside them are `far_azimuth` [degree], `area` [m^2], the connected part around the peak where |p| is half of it
+        or more, `ellipticity`, the smaller over the larger width by second moments along their principal axes (as in ISO 11146), and
+        `orientation` [degree], the direction of the larger. Second moments are taken over the connected part around the peak where |p| exceeds
+        a hundredth of it, or over the `window` on both axes, a square.
+
     Warns
     -----
     RuntimeWarning
@@ -88,10 +101,16 @@ def beam_measures(
     ['reflected', 'transmitted']
     >>> bool(ds.power.sum("side") < 1)  # the rest is absorbed
     True
+    >>> ellipse = bp.GaussianBeam((0.3, 0.15), angle=30, azimuth=20)
+    >>> ds = bp.beam_measures(slab, ellipse, 2500.0).sel(side="transmitted")
+    >>> dict(ds.lateral_shift.sizes), bool(ds.ellipticity < 0.6)
+    ({'axis': 2}, True)
     """
     validate.flag_or_function(progress, "progress")
-    beams = checks.beams(slab, beam, frequency, angle, rtol)
     half = None if window is None else validate.as_number(window, "window", positive=True)
+    if is_in_space(beam, azimuth):
+        return measures_in_space(space_beams(slab, beam, frequency, angle, rtol, azimuth), half, progress)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
     flat, angles = beams.flat
     memory.check_table(flat.size * angles.size, 280.0)
     table = {name: np.full((flat.size, angles.size, 2), np.nan) for name in measures.Beamlet._fields}
@@ -108,28 +127,21 @@ def beam_measures(
         table[name] += beams.origin
     checks.warn_if_inaccurate(worst, beams.rtol)
     checks.warn_if_inaccurate(worst_power, beams.rtol, of="a power")
-    _warn_of_windows(table, window is not None)
+    _warn_of_missing(table)
+    warn_of_cut_moments(table["rim"], window is not None)
     checks.warn_of_crossings(int(table["crossings"].max()))
     dims, pick = checks.dims(**beams.axes)
-    coords = checks.coords(**beams.axes) | {"side": (("side",), list(SIDES))}
+    coords = checks.coords(**beams.axes) | {"side": (("side",), list(measures.SIDES))}
     variables = {n: ((*dims, "side"), v[pick]) for n, v in table.items()}
     variables["crossings"] = (variables["crossings"][0], variables["crossings"][1].astype(int))
     return datasets.make(variables, coords, "beam_measures", flat, slab=slab, beam=beam, rtol=beams.rtol, window=half)
 
 
-def _warn_of_windows(table: dict[str, np.ndarray], chosen: bool) -> None:
+def _warn_of_missing(table: dict[str, np.ndarray]) -> None:
     missing = [name for name, values in table.items() if np.any(np.isnan(values))]
     if missing:
         warnings.warn(
             f"no beam on a side, or a level not reached inside the window: nan in {', '.join(missing)}",
-            RuntimeWarning,
-            stacklevel=3,
-        )
-    rim = float(np.max(np.nan_to_num(table["rim"], nan=0.0)))
-    if rim > measures.TAIL and not chosen:
-        warnings.warn(
-            f"|p| falls to {rim:.2g} of its peak only, in the widest window tried: centroid, lateral_shift and second moment "
-            "are those of moments_from to moments_to; choose a window",
             RuntimeWarning,
             stacklevel=3,
         )

@@ -18,6 +18,7 @@ from ..progress import Progress, watched
 from ..response.sampled_slab import sample_all
 from ..sources.base import Beam
 from . import checks, hints
+from .space_beams import is_in_space, space_beams, widths_in_space
 from .together import Point, widths_known
 from .widths_of import ROWS_AT_A_TIME
 
@@ -30,6 +31,8 @@ def beam_width(
     rtol: float = 1e-8,
     air_distance: float | None = None,
     progress: Progress = False,
+    *,
+    azimuth: float | None = None,
 ) -> xr.Dataset:
     """Widths of a beam: launched, at the near face, behind the slab, and after a distance without the slab.
 
@@ -37,6 +40,7 @@ def beam_width(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
+        In three dimensions a GaussianBeam, Piston, Bowl, SourcePlane or Array.
     frequency : float or 1-D array, Hz
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
@@ -46,6 +50,9 @@ def beam_width(
         Of `fwhm_air`, in the fluid in front; two of its wavelengths at each frequency by default.
     progress : bool or function
         True: a bar on stderr for work of more than a second. A function wraps the list of blocks that is worked through.
+    azimuth : float, degree, optional
+        Makes it a question of three dimensions, as a beam of two widths, an azimuth or a y0 and transducers do by themselves; overrides the
+        beam's, the direction of its tilt from x towards y. A circular beam has fwhm=(w, w).
 
     Returns
     -------
@@ -54,6 +61,10 @@ def beam_width(
         [m]; `peak_out` [Pa] and `centroid_out` [m] at the far face. Widths are of |p|, or of |p|^2 for a beam
         whose `width_of` is "intensity": between the two places nearest to the peak where it is reached. The centroid is
         taken over the window in which the width was looked for.
+
+        In three dimensions the four widths, of cuts through the peak of each plane, and the centroid have a dimension `axis`, "x" and "y". Beside
+        them are `area_out` [m^2], the connected part of the far face around the peak where |p| (or |p|^2) is half of it or more, and
+        `equivalent_out` [m], the diameter of a disc of that area. `fwhm_launch` of a source with a sharp edge is the edge's diameter.
 
     Warns
     -----
@@ -68,11 +79,16 @@ def beam_width(
     >>> ds = bp.beam_width(slab, bp.GaussianBeam(0.096), [2000, 2500])
     >>> ds.fwhm_out.values.round(6)
     array([0.089805, 0.097446])
+    >>> ds = bp.beam_width(slab, bp.GaussianBeam((0.096, 0.096), angle=45), 2500.0)
+    >>> ds.fwhm_out.values.round(4), round(float(ds.equivalent_out), 4)
+    (array([0.0895, 0.0881]), 0.0886)
     """
     validate.flag_or_function(progress, "progress")
-    beams = checks.beams(slab, beam, frequency, angle, rtol)
     if air_distance is not None:
         air_distance = validate.as_number(air_distance, "air_distance", positive=True)
+    if is_in_space(beam, azimuth):
+        return widths_in_space(space_beams(slab, beam, frequency, angle, rtol, azimuth), air_distance, progress)
+    beams = checks.beams(slab, beam, frequency, angle, rtol)
     flat, angles = beams.flat
     hints.warn_of_width_beside(slab, beam, flat)
     memory.check_table(flat.size * angles.size, 60.0)

@@ -31,7 +31,7 @@ def question_in_space(
     source_beam: Any = beam
     azimuth = source_beam.azimuth if places[3] is None else validate.as_number(places[3], "azimuth")
     z = checks.from_launch_plane(z, beam)
-    _refuse_directions(slab, np.atleast_1d(beams.frequency))
+    refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat
     warn_of_stripes(slab, np.atleast_1d(z), frequencies, averages=False)
@@ -64,7 +64,7 @@ def refuse_options(boundary: str, period: Any, variables: Any, average: Any) -> 
         )
 
 
-def _refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
+def refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
     """Refuse fluids whose density differs along x, which leaves open what it is along y."""
     layers = (layer for cell, _ in slab.segments for layer in cell.layers)
     fluids = [slab.before, slab.after, *(layer.fluid for layer in layers if isinstance(layer, Layer))]

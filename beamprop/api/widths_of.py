@@ -21,6 +21,7 @@ from ..profiles import sections
 from ..response.fluid_slab import FluidSlab
 from ..response.sampled_slab import sample_all
 from ..sources.base import Beam, Tilted, moved_to_origin
+from ..sources.in_space import check_on_a_line
 from ..sources.rows import rows_of, taken
 from . import hints
 
@@ -88,7 +89,7 @@ def widths_of(
     rows, met = np.empty((len(sections.Row._fields), f.size)), np.empty((4, f.size), int)
     terms = np.array(uniform_budget(f.size, 0.0))
     for points in _alike(slabs, beams, f):
-        moved, origins = zip(*(moved_to_origin(beams[i]) for i in points), strict=True)
+        moved, origins = zip(*(moved_to_origin(check_on_a_line(beams[i])) for i in points), strict=True)
         source = rows_of(list(moved))
         for part, s in _sampled([slabs[i] for i in points], f[points]):
             row, crossings, budget = sections.rows(s, taken(source, part), rtol, air_distance)

@@ -14,6 +14,7 @@ from ..contour.space.choose import choose_in_space
 from ..media.structures import Slab
 from ..response import transfer_function
 from ..response.sampled_slab import sample
+from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.in_space import SpaceBeam
 from ..sources.piston import driven_by_velocity
@@ -97,14 +98,17 @@ def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:
     """Choose the contour for frequency i."""
     s = sample(question.slab, float(question.frequency[i]), backward=True)
     beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
-    transfer = transfer_function.through(s, question.source.z0)
-    if driven_by_velocity(question.source):
-        transfer = transfer_function.of_velocity(transfer)
-    factor = getattr(question.source, "radial_factor", None)
-    if factor is not None:
-        transfer = transfer_function.of_depth(transfer, factor)
+    transfer = driven_by(question.source, transfer_function.through(s, question.source.z0))
     quadrature = choose_in_space(s, beams, transfer, (question.x, question.y), question.z, question.rtol)
     return PreparedInSpace(question, SpaceWaves(s.k0, beams, quadrature, question.y, question.x), transfer)
+
+
+def driven_by(source: SpaceBeam, transfer: TransferFunction) -> TransferFunction:
+    """A transfer function of pressure as that of what drives a source: a velocity, and what a depth makes of it."""
+    if driven_by_velocity(source):
+        transfer = transfer_function.of_velocity(transfer)
+    factor = getattr(source, "radial_factor", None)
+    return transfer if factor is None else transfer_function.of_depth(transfer, factor)
 
 
 class PreparedInSpace(NamedTuple):
@@ -112,7 +116,7 @@ class PreparedInSpace(NamedTuple):
 
     question: SpaceQuestion
     waves: SpaceWaves
-    transfer: transfer_function.TransferFunction
+    transfer: TransferFunction
 
     def fill(self, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
         """p at planes and angles into out (A, Z, Y, X), whose (Z, Y, X) is contiguous; the terms of its estimated error, (A,)."""

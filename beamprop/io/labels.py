@@ -13,6 +13,7 @@ COORDINATES: dict[str, tuple[str, str]] = {
     "kx": ("rad/m", "lateral wavenumber"),
     "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),
     "mode": ("1", "number of the guided mode"),
+    "axis": ("1", "direction along which a width or a place is taken"),
     "side": ("1", "reflected beam at the near face, or transmitted beam at the far face"),
 }
 
@@ -44,6 +45,10 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "power": ("1", "share of the launched power that radiates"),
     "divergence": ("degree", "far-field half-angle, two standard deviations of the power's direction"),
     "far_angle": ("degree", "mean direction of the radiated power"),
+    "far_azimuth": ("degree", "azimuth of that direction, from x towards y"),
+    "area": ("m^2", "connected area around the peak where |p| is at least half of it"),
+    "ellipticity": ("1", "smaller over larger width by second moments, along their principal axes"),
+    "orientation": ("degree", "direction of the larger of these, from x towards y"),
     "crossings": ("1", "how often |p| crosses the half level inside the window"),
     "moments_from": ("m", "begin of the interval of centroid and second moment"),
     "moments_to": ("m", "end of the interval of centroid and second moment"),
@@ -86,6 +91,8 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "fwhm_in": ("m", "full width at half maximum of the incident beam at the near face"),
     "fwhm_out": ("m", "full width at half maximum at the far face"),
     "fwhm_air": ("m", "full width at half maximum after the comparison distance without a slab"),
+    "area_out": ("m^2", "connected area at half maximum around the peak at the far face"),
+    "equivalent_out": ("m", "diameter of a disc of that area"),
     "peak_out": ("Pa", "largest |p| at the far face"),
     "centroid_out": ("m", "centroid of |p|^2 at the far face"),
 }

@@ -18,16 +18,17 @@ from ..sources.base import Beam
 from . import power
 from .fwhm import full_width
 from .power import NOTHING, PowerError, Radiated
-from .windows import Windows, ends_over_peak, widened
+from .windows import TAIL, Windows, ends_over_peak, widened
 
-#: The window ends where |p| has fallen to this share of its peak; second moments and centroids are taken inside.
-#: A Gaussian beam loses 4e-4 of its second moment by it, 2e-4 of its width.
-TAIL = 0.01
 #: So often the window is doubled to get there, to 64 times the first; guided waves of a lossless slab run along for ever.
 DOUBLINGS = 6
 #: Samples in a window of the user's choice, over those that the beam's band needs: |p|^2 is cut off at its ends, where the error of
 #: Simpson's rule falls with the fourth power of the spacing, to 2e-4 of what the needed samples leave.
 FINER = 8
+
+
+#: Names of the sides, in the order of `reflected_and_transmitted`.
+SIDES = ("reflected", "transmitted")
 
 
 class Beamlet(NamedTuple):
@@ -57,7 +58,7 @@ def reflected_and_transmitted(s: SampledSlab, beam: Beam, rtol: float, window: f
     choose.check_rays(s, beam, s.thickness - beam.z0, 0.0 if window is None else window)
     slope = math.tan(math.radians(beam.angle))
     ray = beam.centre - beam.z0 * slope
-    launched = _power(s, beam, TransferFunction(s, _unchanged), False, rtol)
+    launched = _power(s, beam, TransferFunction(s, unchanged), False, rtol)
     sides = (
         Side(transfer_function.reflected(s, beam.z0), ray, False),
         Side(transfer_function.through(s, beam.z0), ray + s.thickness * slope, True),
@@ -73,12 +74,13 @@ class Side(NamedTuple):
     behind: bool
 
 
-def _unchanged(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+def unchanged(s: SampledSlab, kx: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """H = 1: the launched beam."""
     return np.ones((z.size, kx.size))
 
 
 def _measure(s: SampledSlab, beam: Beam, side: Side, launched: Radiated, rtol: float, window: float | None) -> Measured:
-    if not _any_beam(s, beam, side.transfer):
+    if not any_beam(s, beam, side.transfer):
         return NO_BEAM, uniform_budget(1, 0.0), PowerError()
     whole = window is not None
     profile = widened(
@@ -117,7 +119,7 @@ _NAN = math.nan
 NO_BEAM = Beamlet(_NAN, _NAN, _NAN, _NAN, _NAN, 0.0, 0.0, _NAN, _NAN, 0, _NAN, _NAN, _NAN)
 
 
-def _any_beam(s: SampledSlab, beam: Beam, transfer: TransferFunction) -> bool:
+def any_beam(s: SampledSlab, beam: Beam, transfer: TransferFunction) -> bool:
     """Whether more than rounding goes that way (a slab of the ambient reflects nothing)."""
     k = np.linspace(-0.999, 0.999, 101) * s.k0 + 0j
     strength = np.abs(beam.spectrum(k, s.k0))
@@ -159,21 +161,26 @@ def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float
     return float(centre), float(np.sqrt(integral(weight * (x - centre) ** 2, x=x) / total)), part
 
 
+def carried(
+    s: SampledSlab, z0: float, transfer: TransferFunction, behind: bool, kx: np.ndarray, shift: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """H at a face, what plane waves of unit spectrum on z0 carry away from it, and kz but for a factor, at real kx: (n,) each."""
+    if behind:
+        h, flux = transfer_function.transmitted_power(s, kx, z0, shift)
+        return h, flux, np.sqrt(np.maximum(s.largest_kx(behind) ** 2 - kx.real**2, 0.0))
+    h, weight = transfer(kx, np.array([s.thickness]), shift)[0], s.admittance_before(kx)[0].real
+    return h, np.abs(h) ** 2 * weight, weight
+
+
 def _power(s: SampledSlab, beam: Beam, transfer: TransferFunction, behind: bool, rtol: float) -> Radiated:
     """What S h radiates into a half-space, but for a constant."""
-    face = np.array([s.thickness])
     k = s.largest_kx(behind)
     if k == 0:
         return NOTHING
 
     def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
         kx = kx.astype(complex)
-        if behind:
-            h, flux = transfer_function.transmitted_power(s, kx, beam.z0, shift)
-            weight = np.sqrt(np.maximum(k * k - kx.real**2, 0.0))  # as kz, but for a factor
-        else:
-            h, weight = transfer(kx, face, shift)[0], s.admittance_before(kx)[0].real
-            flux = np.abs(h) ** 2 * weight
+        h, flux, weight = carried(s, beam.z0, transfer, behind, kx, shift)
         right, left = (np.abs(beam.spectrum(sign * kx, s.k0)) ** 2 for sign in (1, -1))
         return np.stack([flux * right, flux * left, h * weight * (right + left)])
 

@@ -17,7 +17,8 @@ import numpy as np
 from .. import memory
 from ..contour.paths import slow_ends
 
-#: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx, and the response h weighted by what was launched: (3, n).
+#: kx (n,), real and >= 0 -> what waves of kx and of -kx carry, per kx, the response h weighted by what was launched, and whatever else is to
+#: be integrated: (3 + m, n).
 Density = Callable[[np.ndarray], np.ndarray]
 
 #: Nodes of both rules on a panel (experiments/benchmarks/constants.py: fewer or more take about the same time).
@@ -49,12 +50,14 @@ class PowerError(NamedTuple):
 
 
 class Radiated(NamedTuple):
-    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated error."""
+    """Power, but for a constant, mean and standard deviation of its direction [degree], and the power's estimated error; the m further
+    integrals over the power."""
 
     total: float
     mean: float
     deviation: float
     error: PowerError
+    means: np.ndarray = np.empty(0)
 
 
 NOTHING = Radiated(0.0, math.nan, math.nan, PowerError())
@@ -76,7 +79,9 @@ class _Nodes(NamedTuple):
 class _Sums(NamedTuple):
     """Sums on panels."""
 
-    moments: np.ndarray  #: power, and first and second moment of its direction about a reference, (3, P)
+    moments: (
+        np.ndarray
+    )  #: power, first and second moment of its direction about a reference, and further integrals, (3 + m, P)
     apart: np.ndarray  #: by how much both rules for the power and for the response differ, (2, P)
     rounding: np.ndarray  #: by how much the power and the response move with the last bits of the input, (2, P)
     response: np.ndarray  #: sum of the response, (P,)
@@ -113,12 +118,18 @@ def radiated(density: Density, moved: Density, k: float, breaks: list[float], co
         more = _summed(*values(*halves), reference)
         start, stop = (np.concatenate([old[~split], new]) for old, new in zip((start, stop), halves, strict=True))
         sums = _Sums(*(np.concatenate([old[..., ~split], new], -1) for old, new in zip(sums, more, strict=True)))
-    total, first, second = sums.moments.sum(axis=1)
+    total, first, second, *more = sums.moments.sum(axis=1)
     if not total > 0:
         return NOTHING
     mean = first / total
     error = PowerError(float(sums.apart[0].sum() / total), float(abs(sums.rounding[0].sum()) / total))
-    return Radiated(float(total), float(reference + mean), math.sqrt(max(second / total - mean**2, 0.0)), error)
+    return Radiated(
+        float(total),
+        float(reference + mean),
+        math.sqrt(max(second / total - mean**2, 0.0)),
+        error,
+        np.array(more) / total,
+    )
 
 
 def nodes_of(k: float, edges: np.ndarray, start: np.ndarray, stop: np.ndarray) -> _Nodes:
@@ -144,18 +155,17 @@ def rule_of(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _summed(nodes: _Nodes, plain: np.ndarray, moved: np.ndarray, width: np.ndarray, about: float) -> _Sums:
-    """Sums of densities, plain at all nodes and moved in their last bits at those of the finer rule, (3, n)."""
-    right, left, response = plain.reshape(3, *nodes.kx.shape) * nodes.slope
+    """Sums of densities, plain at all nodes and moved in their last bits at those of the finer rule, (3 + m, n)."""
+    right, left, response, *more = plain.reshape(-1, *nodes.kx.shape) * nodes.slope
     right, left = right.real, left.real
     angle = np.degrees(nodes.alpha)
     off, across = angle - about, -angle - about
     v, half = rule_of(FINE)[1], width / 2
-    moments = (
-        np.stack([right + left, right * off + left * across, right * off**2 + left * across**2])[..., :FINE] @ v * half
-    )
+    of_direction = right + left, right * off + left * across, right * off**2 + left * across**2
+    moments = np.stack([*of_direction, *(values.real for values in more)])[..., :FINE] @ v * half
     both = np.stack([right + left, response])
     fine, coarse = both[..., :FINE] @ v * half, both[..., FINE:] @ rule_of(COARSE)[1] * half
-    changed = moved.reshape(3, -1, FINE) * nodes.slope[:, :FINE]
+    changed = moved[:3].reshape(3, -1, FINE) * nodes.slope[:, :FINE]
     changed = np.stack([changed[0] + changed[1], changed[2]]) @ v * half - fine
     rounding = np.stack([changed[0].real, np.abs(changed[1])])
     return _Sums(moments, np.abs(fine - coarse), rounding, fine[1])

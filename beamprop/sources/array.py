@@ -11,7 +11,7 @@ import numpy as np
 
 from .. import validate
 from .base import Beam, sin_degrees
-from .in_space import SpaceBeam, mean_size, unit_vector
+from .in_space import SpaceBeam, mean_size, scattered_spectrum, unit_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,6 +163,13 @@ class Array:
         x, y = self.positions.T
         along_y = np.exp(-1j * np.multiply.outer(np.ravel(ky), y)) * self.driven(k0)
         return self._own.spectrum_at(kx, ky, k0) * (along_y @ np.exp(-1j * np.multiply.outer(x, np.ravel(kx))))
+
+    def scattered_spectrum(self, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:
+        """The same at places (kx, ky), (n,) each: (n,)."""
+        driven, phases = self.driven(k0), np.zeros(kx.size, complex)
+        for (x, y), weight in zip(self.positions, driven, strict=True):
+            phases += weight * np.exp(-1j * (kx * x + ky * y))
+        return scattered_spectrum(self._own, kx, ky, k0) * phases
 
     # --- how far it reaches -----------------------------------------------------------------------------
 

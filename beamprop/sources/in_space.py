@@ -21,6 +21,7 @@ class SpaceBeam(Beam, Protocol):
     Members that a source may have beside these:
 
     * ``mean_size(k, k0)``: see `mean_size`.
+    * ``scattered_spectrum(kx, ky, k0)``: see `scattered_spectrum`.
     * ``by_velocity``: whether the spectrum is that of rho c times the normal velocity; of pressure without it.
     * ``radial_factor(k, kz)``: what the spectrum has to be multiplied with, where that is a function of kz in front as well, at complex k.
     """
@@ -51,6 +52,11 @@ def unit_vector(azimuth: float) -> tuple[float, float]:
     return x, y
 
 
+def has_edge(beam: Any) -> bool:
+    """Whether a source in space has a sharp edge, so that its spectrum does not end."""
+    return not np.all(np.isfinite(beam.box(1.0, 0.5)))
+
+
 #: Directions over which |S| is averaged.
 AVERAGED = 256
 
@@ -63,6 +69,12 @@ def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
     turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(AVERAGED) / AVERAGED
     kx, ky = (np.multiply.outer(k, along) for along in (np.cos(turn), np.sin(turn)))
     return np.asarray(np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1))
+
+
+def scattered_spectrum(beam: Any, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:
+    """S at places (kx, ky), (n,) each, by the source's own method if `spectrum_at` answers on lattices alone: (n,)."""
+    own = getattr(beam, "scattered_spectrum", None)
+    return np.asarray(beam.spectrum_at(kx, ky, k0) if own is None else own(kx, ky, k0))
 
 
 #: Directions on an ellipse in which its largest distance from the origin is looked for: between two the distance differs by
@@ -144,7 +156,6 @@ def check_on_a_line(beam: Any) -> Any:
     """The source, or a ValueError where it is one of three dimensions alone."""
     if needs_y(beam):
         raise ValueError(
-            f"beam: expected one on which nothing depends on y (one width, no azimuth, no y0), got {beam!r}: ask field with y= (3-D widths and "
-            "measures: not available yet; take fwhm(p, dim='y') of its answer)"
+            f"beam: expected one on which nothing depends on y (one width, no azimuth, no y0), got {beam!r}: ask field with y="
         )
     return beam

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .. import memory, validate
-from .base import Tilted, spectral_sum
+from .base import BLOCK, Tilted, spectral_sum
 from .in_space import unit_vector
 from .plane_files import read_plane
 from .profile import on_even_positions
@@ -184,6 +184,18 @@ class SourcePlane(Tilted):
             inside = np.abs(own) <= math.pi / spacing * (1 + 1e-12)
             sums = np.where(inside, spacing, 0.0)[:, None] * spectral_sum(own, at, sums.T)
         return sums
+
+    def scattered_spectrum(self, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:
+        """S at places (kx, ky), (n,) each, in blocks of bounded memory: (n,)."""
+        (dx, dy), tilts, out = self._spacings, self._tilts(k0), np.empty(kx.size, complex)
+        block = max(1, BLOCK // max(self.p.shape))
+        for start in range(0, kx.size, block):
+            part = slice(start, start + block)
+            x, y = kx[part] - tilts[0], ky[part] - tilts[1]
+            along_x, along_y = np.exp(-1j * np.outer(x, self.x)), np.exp(-1j * np.outer(y, self.y))
+            inside = (np.abs(x) * dx <= math.pi) & (np.abs(y) * dy <= math.pi)
+            out[part] = inside * dx * dy * np.einsum("ky,ky->k", along_y, along_x @ self.p.T)
+        return out
 
     # --- how far it reaches -----------------------------------------------------------------------------
 

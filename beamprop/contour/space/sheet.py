@@ -45,7 +45,7 @@ class Spectrum(NamedTuple):
 
     def wider(self, more: float) -> Spectrum:
         """Around the same middle."""
-        if more == 1:
+        if more == 1 or math.isinf(self.high):
             return self
         middle, half = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
         box = np.stack([middle - more * half, middle + more * half], axis=1)

@@ -1,0 +1,261 @@
+"""A beam in three dimensions as a whole, at a face of the slab: widths, place, shift, second moments, power, direction."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..contour.error import SHIFT, ErrorBudget, uniform_budget
+from ..fields.in_space import driven_by
+from ..response import transfer_function
+from ..response.sampled_slab import SampledSlab
+from ..response.transfer_function import TransferFunction
+from ..sources.in_space import scattered_spectrum, unit_vector
+from . import power
+from .level_area import Area, area_above, connected
+from .measures import Side, any_beam, carried, unchanged
+from .power import NOTHING, PowerError, Radiated
+from .space_plane import Sampled, Window, plane_of, sampled
+from .space_widths import cuts_of, profile_of, section
+from .windows import TAIL
+
+#: Widths of the principal axes that differ by less than this are equal, and their orientation rounding; so is the azimuth of a mean
+#: direction that is nearer to the normal.
+EQUAL = 1e-6
+#: Directions beyond those of the source's extent: its spectrum's harmonics fall off within them.
+MARGIN = 40
+#: Gauss nodes beyond half the turns of |p|^2 over a window: Bessel functions of so much higher order are 1e-16.
+BEYOND = 20
+#: Values of spectra that are held at a time: 32 MB.
+BLOCK = 1_000_000
+
+
+class Beamlet(NamedTuple):
+    """Measures of one outgoing beam at a face; names of the dataset's variables. Arrays (2,) along x and y."""
+
+    fwhm: np.ndarray
+    width_1e2: np.ndarray
+    width_second_moment: np.ndarray
+    centroid: np.ndarray
+    lateral_shift: np.ndarray
+    area: float
+    ellipticity: float
+    orientation: float
+    peak: float
+    power: float
+    divergence: np.ndarray
+    far_angle: float
+    far_azimuth: float
+    crossings: np.ndarray
+    moments_from: np.ndarray
+    moments_to: np.ndarray
+    rim: float
+
+
+#: Those that have a value along each axis.
+BY_AXIS = (
+    *("fwhm", "width_1e2", "width_second_moment", "centroid", "lateral_shift", "divergence", "crossings"),
+    *("moments_from", "moments_to"),
+)
+
+_NAN, _NANS = math.nan, np.full(2, math.nan)
+#: The measures of a side without a beam.
+NO_BEAM = Beamlet(
+    *(_NANS, _NANS, _NANS, _NANS, _NANS, _NAN, _NAN, _NAN, 0.0, 0.0, _NANS, _NAN, _NAN, np.zeros(2), _NANS, _NANS, _NAN)
+)
+
+
+class Measured(NamedTuple):
+    """A beam, and the estimated errors of its |p| over the largest, of its power and of its area."""
+
+    beamlet: Beamlet
+    budget: ErrorBudget
+    power: PowerError
+    area: Area
+
+
+def reflected_and_transmitted(s: SampledSlab, source: Any, rtol: float, window: float | None) -> list[Measured]:
+    """The reflected and the transmitted beam; places are from the source's middle."""
+    slope, z0 = math.tan(math.radians(source.angle)), source.z0
+    directions = Directions(source, s.k0, {})
+    launched = _radiated(s, directions, Side(TransferFunction(s, unchanged), 0.0, False), rtol)
+    sides = (
+        Side(transfer_function.reflected(s, z0), -z0 * slope, False),
+        Side(transfer_function.through(s, z0), (s.thickness - z0) * slope, True),
+    )
+    return [_measure(s, directions, side, launched, rtol, window) for side in sides]
+
+
+def _measure(
+    s: SampledSlab, directions: Directions, side: Side, launched: Radiated, rtol: float, window: float | None
+) -> Measured:
+    source = directions.source
+    if not any_beam(s, source, side.transfer):
+        return Measured(NO_BEAM, uniform_budget(1, 0.0), PowerError(), Area(0.0, 0.0))
+    way = driven_by(source, side.transfer), s.thickness
+    ray = side.ray * np.array(unit_vector(source.azimuth))
+    if window is None:
+        profile = profile_of(s, source, way, rtol, TAIL)
+    else:
+        chosen = Window(ray, np.full(2, window))
+        profile = sampled(plane_of(s, source, *way, chosen, rtol), chosen)
+    half = section(profile, 0.5)
+    moments = _in_part(profile) if window is None else _in_window(profile)
+    area = area_above(profile, half.peak, 0.5, rtol)
+    radiated = _radiated(s, directions, side, rtol)
+    ellipticity, orientation = _principal(moments.matrix)
+    divergence, far_angle, far_azimuth = _direction(radiated)
+    beamlet = Beamlet(
+        fwhm=half.width,
+        width_1e2=np.array([float(cut.width) for cut in cuts_of(profile, half.peak, math.exp(-1))]),
+        width_second_moment=4 * np.sqrt(np.diag(moments.matrix)),
+        centroid=moments.centroid,
+        lateral_shift=moments.centroid - ray,
+        area=area.value,
+        ellipticity=ellipticity,
+        orientation=orientation,
+        peak=half.peak.size,
+        power=radiated.total / launched.total if launched.total > 0 else math.nan,
+        divergence=divergence,
+        far_angle=far_angle,
+        far_azimuth=far_azimuth,
+        crossings=half.crossings,
+        moments_from=moments.begin,
+        moments_to=moments.end,
+        rim=moments.rim,
+    )
+    return Measured(beamlet, half.budget, radiated.error.plus(launched.error), area)
+
+
+# --- second moments ---------------------------------------------------------------------------------------
+
+
+class Moments(NamedTuple):
+    """Centroid (2,) and covariance (2, 2) of |p|^2, the rectangle in which they are taken, and the largest |p| where it is cut off, over the peak."""
+
+    centroid: np.ndarray
+    matrix: np.ndarray
+    begin: np.ndarray
+    end: np.ndarray
+    rim: float
+
+
+def _in_part(profile: Sampled) -> Moments:
+    """Over the samples that are connected to the peak above the tail."""
+    size = np.abs(profile.p)
+    row, column = np.unravel_index(np.argmax(size), size.shape)
+    part = connected(size >= TAIL * size.max(), (int(row), int(column)))
+    weight = np.where(part, size**2, 0.0)
+    rows, columns = (np.flatnonzero(part.any(axis=axis)) for axis in (1, 0))
+    begin = np.array([profile.x[columns[0]], profile.y[rows[0]]])
+    end = np.array([profile.x[columns[-1]], profile.y[rows[-1]]])
+    rim = profile._replace(p=np.where(part, size, 0.0)).rim
+    return Moments(*_moments(weight, profile.x, profile.y), begin, end, max(rim, TAIL))
+
+
+def _in_window(profile: Sampled) -> Moments:
+    """Over the whole window, by Gauss's rule: its ends cut off what an even grid would sum to fourth order."""
+    nodes = []
+    for at, k in ((profile.x, profile.plane.kx), (profile.y, profile.plane.ky)):
+        g, w = np.polynomial.legendre.leggauss(BEYOND + math.ceil((at[-1] - at[0]) / 4 * np.ptp(k)))
+        nodes.append(((at[0] + at[-1]) / 2 + (at[-1] - at[0]) / 2 * g, w))
+    (x, of_x), (y, of_y) = nodes
+    weight = np.abs(profile.plane.on_grid(x, y)) ** 2 * np.outer(of_y, of_x)
+    begin, end = (np.array([profile.x[i], profile.y[i]]) for i in (0, -1))
+    return Moments(*_moments(weight, x, y), begin, end, profile.rim)
+
+
+def _moments(weight: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Centroid and covariance of weights (Y, X)."""
+    total = weight.sum()
+    if not total > 0:
+        return _NANS, np.full((2, 2), math.nan)
+    of_x, of_y = weight.sum(axis=0) / total, weight.sum(axis=1) / total
+    middle = np.array([of_x @ x, of_y @ y])
+    u, v = x - middle[0], y - middle[1]
+    mixed = v @ weight @ u / total
+    return middle, np.array([[of_x @ u**2, mixed], [mixed, of_y @ v**2]])
+
+
+def _principal(matrix: np.ndarray) -> tuple[float, float]:
+    """The smaller over the larger principal width, and the direction of the larger [degree], in (-90, 90]; 0 where they are equal."""
+    if not np.all(np.isfinite(matrix)):
+        return math.nan, math.nan
+    (least, most), axes = np.linalg.eigh(matrix)
+    ratio = math.sqrt(max(least, 0.0) / most)
+    x, y = axes[:, 1]
+    direction = math.degrees(math.atan2(y, x))
+    direction -= 180 * math.ceil((direction - 90) / 180)
+    return ratio, direction if ratio < 1 - EQUAL else 0.0
+
+
+# --- power ------------------------------------------------------------------------------------------------
+
+
+class Directions(NamedTuple):
+    """Means over directions of what a source sends, at |k| that both quadrature rules, sides and moved last bits share."""
+
+    source: Any
+    k0: float
+    known: dict[tuple[float, float], np.ndarray]  #: by |k| and the wavenumber of the medium, (8,) each
+
+    def means(self, radii: np.ndarray, k: float) -> np.ndarray:
+        """See `_by_direction`: (8, n)."""
+        missing = np.array([radius for radius in radii.tolist() if (radius, k) not in self.known])
+        if missing.size:
+            columns = _by_direction(self.source, missing, self.k0, k).T
+            self.known.update(((radius, k), column) for radius, column in zip(missing.tolist(), columns, strict=True))
+        return np.array([self.known[radius, k] for radius in radii.tolist()]).T
+
+
+def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -> Radiated:
+    """What a source radiates from a side: the integral over |k| of the mean of |S|^2 over directions; means are those of `_by_direction`."""
+    k, source = s.largest_kx(side.behind), directions.source
+    if k == 0:
+        return NOTHING
+    drive = driven_by(source, TransferFunction(s, unchanged))
+    reach = source.reach(1e-8)
+
+    def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
+        launched, *by_direction = directions.means(kx, k)
+        kx = kx.astype(complex)
+        driven = drive(kx, np.zeros(1), shift)[0]
+        h, flux, weight = carried(s, source.z0, side.transfer, side.behind, kx, shift)
+        flux = flux * np.abs(driven) ** 2 * kx.real
+        rows = [flux * launched, np.zeros(kx.size), h * driven * weight * launched * kx.real]
+        return np.stack([*rows, *(flux * mean for mean in by_direction)])
+
+    count = 200 + 2 * k * (reach + s.thickness - source.z0)
+    return power.radiated(density, lambda kx: density(kx, SHIFT), k, s.real_branches, count, rtol)
+
+
+def _by_direction(source: Any, radii: np.ndarray, k0: float, k: float) -> np.ndarray:
+    """Means over directions at |k| (n,) of |S|^2, and of it times x, y and z of the unit vector in a medium of wavenumber k, and times the angles
+    to the planes x = 0 and y = 0 less the source's own, and their squares: (8, n)."""
+    count = 4 * math.ceil((MARGIN + 2 * float(radii.max()) * source.reach(1e-8)) / 4)  # x and y alike
+    turn = 2 * math.pi * np.arange(count) / count
+    own = [math.sin(math.radians(source.angle)) * v for v in unit_vector(source.azimuth)]
+    out = np.empty((8, radii.size))
+    block = max(1, BLOCK // count)
+    for start in range(0, radii.size, block):
+        part = slice(start, start + block)
+        x, y = (np.multiply.outer(radii[part], v(turn)) for v in (np.cos, np.sin))
+        strength = np.abs(scattered_spectrum(source, x.ravel(), y.ravel(), k0).reshape(x.shape)) ** 2
+        z = np.sqrt(np.maximum(k * k - radii[part] ** 2, 0.0))[:, None]
+        angles = [np.arcsin(np.clip(v / k, -1, 1)) - math.asin(a) for v, a in zip((x, y), own, strict=True)]
+        factors = (1.0, x / k, y / k, z / k, *angles, *(v**2 for v in angles))
+        out[:, part] = [np.mean(strength * factor, axis=1) for factor in factors]
+    return out
+
+
+def _direction(radiated: Radiated) -> tuple[np.ndarray, float, float]:
+    """Two standard deviations along x and y, and the mean direction from the normal and its azimuth [degree]; nan where nothing radiates."""
+    if not radiated.means.size:
+        return _NANS, math.nan, math.nan
+    x, y, z, *angles = radiated.means
+    mean, square = np.array(angles[:2]), np.array(angles[2:])
+    aside = math.hypot(x, y)
+    azimuth = math.degrees(math.atan2(y, x)) if aside > EQUAL * z else 0.0
+    return 2 * np.degrees(np.sqrt(np.maximum(square - mean**2, 0.0))), math.degrees(math.atan2(aside, z)), azimuth

@@ -1,0 +1,161 @@
+"""p(x, y) of a beam in three dimensions across one plane, as the plane waves of a lattice, in windows that grow."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import memory
+from ..contour.error import ErrorBudget
+from ..contour.space.choose import choose_in_space
+from ..contour.stationary_phase import BRIGHT, shifts
+from ..response.sampled_slab import SampledSlab
+from ..response.transfer_function import TransferFunction
+from ..sources.angles import single
+from ..sources.in_space import has_edge, unit_vector
+from .windows import FAINT
+
+#: A window is doubled while it does not hold what is measured, up to so many times, and while its lattice has no more points than this: the next
+#: has four times as many, a second or so.
+DOUBLINGS, MOST_POINTS = 5, 100_000
+#: Rays in each direction by which the first window is chosen, and how far in front of grazing they end [k0].
+RAYS, GRAZING = 41, 0.98
+#: Positions of a grid for each turn of |p|^2 along it: three for each of |p|, which is sampled finely enough for its maxima to show.
+FINER = 3
+#: Values of exponentials that are held at a time: 64 MB.
+BLOCK = 4_000_000
+
+
+class Plane(NamedTuple):
+    """p = sum waves exp(i kx x + i ky y) of positions from the source's middle, and its estimated error."""
+
+    kx: np.ndarray  #: (Nx,)
+    ky: np.ndarray  #: (Ny,)
+    waves: np.ndarray  #: (Ny, Nx)
+    budget: ErrorBudget
+
+    def on_grid(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """p (Y, X) by two matrix products."""
+        return np.asarray(np.exp(1j * np.outer(y, self.ky)) @ (self.waves @ np.exp(1j * np.outer(self.kx, x))))
+
+    def along(self, axis: int, across: float) -> Callable[[np.ndarray], np.ndarray]:
+        """p on the line along x (0) or y (1) at the position `across` it, as a function of positions of any shape."""
+        k, of_line = (self.kx, self.ky)[axis], np.exp(1j * across * (self.ky, self.kx)[axis])
+        line = of_line @ (self.waves if axis == 0 else self.waves.T)
+        return lambda at: np.exp(1j * np.multiply.outer(at, k)) @ line
+
+    def taylor(self, places: np.ndarray, order: int) -> list[np.ndarray]:
+        """p and its derivatives up to an order, as p, p_x, p_y, p_xx, p_xy, p_yy, at places (P, 2): (P,) each."""
+        powers = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)][: (order + 1) * (order + 2) // 2]
+        out = np.empty((len(powers), len(places)), complex)
+        block = max(1, BLOCK // (self.kx.size + self.ky.size))
+        for start in range(0, len(places), block):
+            part = slice(start, start + block)
+            along_x, along_y = (np.exp(1j * np.outer(places[part, i], k)) for i, k in enumerate((self.kx, self.ky)))
+            rows = [(along_y * (1j * self.ky) ** n) @ self.waves for n in range(order + 1)]
+            for value, (n, m) in zip(out, powers, strict=True):
+                value[part] = np.einsum("pk,pk->p", rows[m], along_x * (1j * self.kx) ** n)
+        return list(out)
+
+    def steps(self) -> tuple[float, float]:
+        """Spacings of a grid on which |p|^2 shows its maxima, along x and y."""
+        strong = np.abs(self.waves) > FAINT * np.abs(self.waves).max()
+        turns = (np.ptp(k[strong.any(axis=i)]) for i, k in enumerate((self.kx, self.ky)) if strong.any())
+        return tuple(2 * math.pi / (FINER * max(t, 1e-9)) for t in turns)
+
+
+class Window(NamedTuple):
+    """A rectangle, from the source's middle: (2,) each [m]."""
+
+    middle: np.ndarray
+    half: np.ndarray
+
+
+def plane_of(s: SampledSlab, source: Any, transfer: TransferFunction, z: float, window: Window, rtol: float) -> Plane:
+    """p across the plane z on a contour that serves a window."""
+    grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(*window, strict=True))
+    beams, planes = single(source), np.array([z])
+    quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
+    contour = quadrature.contour
+    lattice = contour.lattice
+    waves = np.zeros((lattice.ky.size, lattice.kx.size), complex)
+    waves.ravel()[lattice.inside] = lattice.on_lattice(transfer(contour.k, planes))[0]
+    return Plane(lattice.kx, lattice.ky, waves * lattice.spectra(s.k0, beams)[0], quadrature.budget)
+
+
+class Sampled(NamedTuple):
+    """A plane, and p on a grid of a window."""
+
+    plane: Plane
+    x: np.ndarray  #: (X,)
+    y: np.ndarray  #: (Y,)
+    p: np.ndarray  #: (Y, X)
+
+    @property
+    def rim(self) -> float:
+        """The largest |p| on the window's rim over that inside; 0 where nothing arrives."""
+        size = np.abs(self.p)
+        rim = max(float(v.max()) for v in (size[0], size[-1], size[:, 0], size[:, -1]))
+        return rim / float(size.max()) if rim > 0 else 0.0
+
+
+def sampled(plane: Plane, window: Window) -> Sampled:
+    """p on a grid of a window that shows its maxima."""
+    x, y = (
+        m + h * np.linspace(-1, 1, 2 * max(48, math.ceil(h / step)) + 1)
+        for m, h, step in zip(*window, plane.steps(), strict=True)
+    )
+    memory.check_terms(plane.waves.size, x.size)
+    return Sampled(plane, x, y, plane.on_grid(x, y))
+
+
+def widened(
+    s: SampledSlab, source: Any, way: tuple[TransferFunction, float], window: Window, rtol: float, rim: float
+) -> Sampled:
+    """p across the plane of a `way` (H and z) in the first of ever wider windows on whose rim |p| is below `rim` of the largest."""
+    for doubling in range(DOUBLINGS + 1):
+        plane = plane_of(s, source, *way, window, rtol)
+        profile = sampled(plane, window)
+        if profile.rim < rim or doubling == DOUBLINGS or plane.waves.size > MOST_POINTS:
+            break
+        window = window._replace(half=2 * window.half)
+    return profile
+
+
+def landing(s: SampledSlab, source: Any, transfer: TransferFunction, z: float) -> Window:
+    """A window about the places where a beam is bright, by stationary phase.
+
+    H depends on |k| alone, so that a plane wave is carried along its own (kx, ky), by D = -d(arg H)/d|k|. |p| there is |S H| over the root of how
+    far rays part, along and across the plane wave: dD/d|k| and D/|k|.
+    """
+    low, high = np.clip(_strong_box(source, s.k0), -GRAZING * s.k0, GRAZING * s.k0).T
+    kx, ky = (np.linspace(a, b, RAYS) for a, b in zip(low, high, strict=True))
+    k = np.hypot(kx, ky[:, None])
+    radii, step = np.linspace(max(k.min(), 1e-3 * s.k0), max(k.max(), 2e-3 * s.k0), 4 * RAYS), 1e-4 * s.k0
+    h = transfer(np.concatenate([radii - step, radii + step]).astype(complex), np.array([z]))[0]
+    carried, strength = shifts(h[: radii.size], h[radii.size :], step)
+    own = source.reach(0.1) ** 2
+    parts = (np.abs(v) + own for v in (np.gradient(carried, radii), carried / radii))
+    brightness = np.abs(source.spectrum_at(kx[None, :], ky[:, None], s.k0)) * np.interp(
+        k, radii, np.nan_to_num(strength / np.sqrt(math.prod(parts)))
+    )
+    bright = brightness > BRIGHT * brightness.max()
+    share = np.interp(k, radii, np.nan_to_num(carried)) / np.maximum(k, radii[0])
+    places = np.stack([(share * of)[bright] for of in (kx[None, :], ky[:, None])])
+    if not places.size:
+        places = np.zeros((2, 1))
+    least, most = places.min(axis=1), places.max(axis=1)
+    reach = np.array(source.half_widths(1e-2))
+    return Window((least + most) / 2, 1.5 * reach + 2 * math.pi / s.k0 + (most - least) / 2)
+
+
+def _strong_box(source: Any, k0: float) -> np.ndarray:
+    """The least and largest kx, then ky, of the strong plane waves; of a spectrum without end those of its main lobe."""
+    if not has_edge(source):
+        return np.asarray(source.box(k0, 0.3))
+    low, high = source.band(k0, 0.3)
+    middle = (low + high) / 2 * np.array(unit_vector(source.azimuth))
+    return np.stack([middle - (high - low) / 2, middle + (high - low) / 2], axis=1)
