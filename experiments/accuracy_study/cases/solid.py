@@ -10,7 +10,7 @@ import beamprop as bp
 
 from ..case import Case
 from .first import SEED
-from .hard import ENTIRE, brought_near, question
+from .hard import ENTIRE, brought_near, question, user_planes
 from .slabs import WATER, log_uniform
 
 Rng = np.random.Generator
@@ -20,15 +20,15 @@ COMMON = ((7900, 5900, 3200), (2700, 6320, 3130), (8400, 4400, 2200), (2500, 566
 SPREAD = 0.1
 
 
-def draw_loss(rng: Rng) -> float:
-    """Of half of the solids none, of the others Im/Re of their speeds."""
-    return log_uniform(rng, 1e-4, 0.05) if rng.random() < 0.5 else 0.0
+def draw_loss(rng: Rng, lossy: float = 0.5) -> float:
+    """Of some of the solids none, of the others Im/Re of their speeds."""
+    return log_uniform(rng, 1e-4, 0.05) if rng.random() < lossy else 0.0
 
 
-def draw_solid(rng: Rng) -> bp.Solid:
+def draw_solid(rng: Rng, lossy: float = 0.5) -> bp.Solid:
     """One of the common ones, its numbers moved by up to SPREAD."""
     rho, c_l, c_t = np.array(COMMON[rng.integers(len(COMMON))]) * (1 + SPREAD * rng.uniform(-1, 1, 3))
-    loss = draw_loss(rng)
+    loss = draw_loss(rng, lossy)
     return bp.Solid(rho, c_l * (1 - 1j * loss), c_t * (1 - 1j * loss * rng.uniform(1, 1.3)))
 
 
@@ -80,13 +80,17 @@ def _backward(rng: Rng, kind: str) -> Case:
     """A plate half a longitudinal wave thick, whose mode S1 runs backward beside kx = 0, and a beam near the normal."""
     before, after = ((WATER, WATER), (WATER, WATER), (AIR, AIR), (WATER, draw_liquid(rng)))[rng.integers(4)]
     f, lam = _sizes(rng, 343.0 if before is AIR else 1480.0)
-    solid = draw_solid(rng)
+    solid = draw_solid(rng, 0.3)
     half = complex(solid.longitudinal_speed).real / 2 / f  # type: ignore[arg-type]
-    plate = bp.Layer(solid, half * int(rng.choice([1, 1, 1, 2, 3])) * rng.uniform(0.9, 1.06))
-    case = _question(rng, kind, bp.Slab([plate], before=before, after=after), f, lam)
-    if case.source == "Gaussian, launch" and rng.random() < 0.7:
-        case = case._replace(beam=case.beam.at_angle(float(rng.uniform(-12, 12))))
-    return case
+    plate = bp.Layer(solid, half * int(rng.choice([1, 1, 1, 2, 3])) * rng.uniform(0.93, 1.02))
+    case = question(rng, kind, bp.Slab([plate], before=before, after=after), f, ENTIRE)
+    if case.source != "Gaussian, launch" or rng.random() < 0.3:
+        return case
+    # most of them narrow: the contour of a wide one runs above what is backward
+    z0 = -lam * float(rng.choice([0.0, log_uniform(rng, 0.01, 5)]))
+    beam = bp.GaussianBeam(lam * log_uniform(rng, 0.3, 8), float(rng.uniform(-12, 12)), case.beam.x0, z0)
+    x = beam.x0 + beam.fwhm * log_uniform(rng, 0.3, 3) * np.linspace(-1, 1, int(rng.integers(5, 40)))
+    return case._replace(beam=beam, x=x, z=user_planes(rng, beam, case.slab.thickness, lam, case.source))
 
 
 def _air(rng: Rng, kind: str) -> Case:
