@@ -40,6 +40,7 @@ STATED = {
     "pairs_before impedance_ratio_squared",
     "schoch": "angle mhz shift displacement_mm null null_at formula_shift error farther error_aluminium",
     "lattice": "periods steel_mm water_mm fwhm_mm khz lattice_mm angle water_fwhm_mm ray ray_mm peak peak_mm",
+    "brass_plate": "waves thickness_mm frequencies least_mhz most_mhz apart end height mhz backward below leaky decibel",
     "plate": "mm mhz angle t_percent half_width_mm power_percent peak reflected_percent wide_mm wide_percent",
     "double_wall": "leaf_kg depth_cm resonance_hz formula_hz oblique_hz oblique_angle at_hz double_db single_db half_wave_hz "
     "half_wave_db wool_db",

@@ -325,3 +325,24 @@ def test_in_three_dimensions_a_wide_beam_on_a_plate_tends_to_that_of_two():
         beam = bp.GaussianBeam((6e-3, width), angle=12, z0=-2e-3)
         apart.append(abs(bp.field(PLATE, beam, 3e6, x, z, y=0.0).p.values - flat).max())
     assert apart[0] / apart[1] == pytest.approx(4, rel=0.05)
+
+
+# --- components ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["p", "u_x", "u_z", "s_xz", "v_x", "v_z"])
+def test_a_component_is_the_variable_of_its_name(name):
+    """In front of, inside and behind the plate; u is defined in fluids, and s_xz is 0 there."""
+    z = [-1e-3, 5e-4, 2e-3]
+    ds = bp.field(PLATE, BEAM, 3e6, [0.0, 1e-3], z, component=name)
+    same = bp.field(PLATE, BEAM, 3e6, [0.0, 1e-3], z, variables=[name])
+    assert set(ds) == {name, "error_estimate" if name == "p" else f"error_estimate_{name}"}
+    np.testing.assert_array_equal(ds[name], same[name])
+    assert (abs(ds[name]).max("x").values > 0).tolist() == [name != "s_xz", True, name != "s_xz"]
+
+
+def test_components_are_refused_by_name():
+    with pytest.raises(ValueError, match=r"component: expected 'p', .* or 'u_z', got 'power_through'"):
+        bp.field(PLATE, BEAM, 3e6, 0.0, 0.0, component="power_through")
+    with pytest.raises(ValueError, match=r"component: expected none beside variables, .*got 'u_x'"):
+        bp.field(PLATE, BEAM, 3e6, 0.0, 0.0, component="u_x", variables=["v_x"])

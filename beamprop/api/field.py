@@ -16,7 +16,7 @@ from . import checks
 from .cell_average import averaged_row
 from .field_in_space import field_in_space, question_in_space, refuse_options
 from .field_question import checked_question, labelled
-from .field_variables import bytes_held, kinds, no_errors, powers
+from .field_variables import bytes_held, kinds, no_errors, of_component, powers
 
 
 def field(
@@ -35,6 +35,7 @@ def field(
     average: str | None = None,
     y: Any = None,
     azimuth: float | None = None,
+    component: str | None = None,
 ) -> xr.Dataset:
     """Total pressure of a beam in front of, inside and behind a slab; particle velocity, intensity and power on request.
 
@@ -69,6 +70,8 @@ def field(
         * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
+    component : "p", "v_x", "v_z", "u_x", "u_z" or "s_xz", optional
+        The one variable of the dataset, instead of `variables`. All are defined in fluids, too, where s_xz is 0.
     y : float or 1-D array, m, optional
         Makes it a question in three dimensions, in open space, of the pressure: see docs/three-dimensions.md.
     azimuth : float, degree, optional
@@ -116,6 +119,7 @@ def field(
     {'y': 49, 'x': 65}
     """
     validate.flag_or_function(progress, "progress")
+    variables = of_component(component, variables)
     if y is not None:
         space, labels = question_in_space(slab, beam, frequency, angle, rtol, (x, y, z, azimuth))
         refuse_options(boundary, period, variables, average)

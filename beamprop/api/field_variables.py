@@ -50,6 +50,16 @@ def checked_variables(variables: Any, slab: Slab, z: np.ndarray) -> tuple[str, .
     return chosen
 
 
+def of_component(component: Any, variables: Any) -> Any:
+    """`variables`, or what `component` names alone, or a ValueError."""
+    if component is None:
+        return variables
+    if variables != ("p",):
+        raise validate.refuse("component", "none beside variables, which takes several", component)
+    validate.word(component, "component", *SUMMED, *DISPLACEMENT)
+    return (component,)
+
+
 class Row(NamedTuple):
     """A question at one frequency: what is to be filled, and the contour of each quantity that is summed for it."""
 

@@ -177,7 +177,7 @@ class SpeedOfModuli:
 
 
 def _check_moduli(bulk: np.ndarray, shear: np.ndarray, names: tuple[str, str], active: bool) -> None:
-    """Refuse gain and a bulk modulus that is not positive."""
+    """Refuse gain, a bulk modulus that is not positive, and a negative shear modulus without the loss of a resonance."""
     if active:
         return
     rounding = 1e-13 * (np.abs(bulk) + np.abs(shear))
@@ -188,6 +188,12 @@ def _check_moduli(bulk: np.ndarray, shear: np.ndarray, names: tuple[str, str], a
                 f"{name}: expected a passive solid, Im({modulus}) <= 0 with exp(-i w t), got {values[gain].flat[0]} Pa; "
                 "pass active=True for a solid with gain"
             )
+    unstable = (shear.real < 0) & (shear.imag > -rounding)
+    if np.any(unstable):
+        raise ValueError(
+            f"{names[1]}: expected a stable solid, with a shear modulus above zero, got {shear[unstable].flat[0].real:g} Pa; "
+            "active=True allows it"
+        )
     unstable = bulk.real <= 0
     if np.any(unstable):
         raise ValueError(

@@ -11,10 +11,13 @@ from ..case import Case
 from .first import FIRST, SEED, first_case
 from .hard import HARD, hard_case
 from .slabs import SLABS
+from .solid import SOLID, solid_case
 
 #: Cases of the whole study: those of the first fifteen classes, and as many hard ones as make 3000.
 CASES = 3000
-KINDS = [*SLABS, *HARD]
+#: Cases with solids have numbers from here on, which no other class comes to.
+SOLIDS_FROM = 1_000_000
+KINDS = [*SLABS, *HARD, *SOLID]
 #: Grids of more points, and fields wider in wavelengths, than these are requested by themselves.
 MANY, WIDE = 5000, 3000
 
@@ -31,11 +34,15 @@ def is_large(case: Case) -> bool:
 
 def make_case(number: int) -> Case:
     """Case `number` of the study; the same on every machine."""
+    if number >= SOLIDS_FROM:
+        return solid_case(number, number - SOLIDS_FROM)
     return first_case(number) if number < FIRST else hard_case(number, number - FIRST)
 
 
 def numbers_of(kind: str) -> Iterator[int]:
-    """The numbers of the cases of one class, without end for a hard one."""
+    """The numbers of the cases of one class, without end for a hard one and one with solids."""
+    if kind in SOLID:
+        return itertools.count(SOLIDS_FROM + list(SOLID).index(kind), len(SOLID))
     if kind in HARD:
         return itertools.count(FIRST + list(HARD).index(kind), len(HARD))
     return iter(range(list(SLABS).index(kind), FIRST, len(SLABS)))

@@ -18,8 +18,9 @@ from ..case import Case
 from .bands import Tent, sided_nodes, stretches
 from .contour import Contour, Grading, bent_nodes, panels, real_nodes
 from .medium import Medium
-from .misplaced import is_lossless, wrong_side
+from .misplaced import alone, has_solids, is_lossless, wrong_side
 from .near_axis import NearAxis
+from .solid_medium import medium_of
 from .source import Source
 
 EPS = float(np.finfo(float).eps)
@@ -75,7 +76,7 @@ class Setting(NamedTuple):
 
 
 def setting(case: Case, own: np.ndarray) -> Setting:
-    m = Medium(case.slab, case.frequency)
+    m = medium_of(case.slab, case.frequency)
     x = np.concatenate([case.x, own]) - case.beam.centre
     path = max(case.z.max() - m.thickness, 0.0) - case.beam.z0 + max(0.0, -case.z.min())
     near = NearAxis(m, case.z, case.beam.z0) if case.kind in SHARP else None
@@ -136,7 +137,7 @@ def misplaced_modes(s: Setting) -> tuple[list[complex] | None, float]:
         c, _ = _contour(s, 0, shallow)
         end = _slab_end(s, c.end)
         wrong = wrong_side(s.case.slab, s.case.frequency, s.m, 1.01 * c.depth, 0.9 * c.corner, end)
-        if wrong is not None or shallow < 0.01 or is_lossless(s.m):
+        if wrong is not None or shallow < 0.01 or (is_lossless(s.m) and not has_solids(s.m)):
             return wrong, shallow
         shallow /= 4
 
@@ -170,6 +171,7 @@ def nodes_on_contour(s: Setting, step: int, shallow: float, wrong: list[complex]
     for k1 in inside:
         apart = [c.depth, *(abs(k1 - b) for b in points), *(abs(k1 - o) for o in wrong if o != k1)]
         radius = (0.3 + 0.1 * (step % 2)) * min(apart)
+        radius = alone(s.m, k1, radius) if has_solids(s.m) else radius
         k, w = np.append(k, k1 + radius * circle), np.append(w, radius * circle * (-2j * np.pi / 40))
     return k, w
 

@@ -10,6 +10,7 @@ import xarray as xr
 from common import save_all, table
 
 from ..cases.numbering import CASES, KINDS, numbers_of, quick_numbers
+from ..cases.solid import SOLID
 from . import in_space, report
 from .comparison import study
 from .limit import limit_table, limiting_absorption
@@ -37,6 +38,7 @@ def arguments(text: str) -> argparse.Namespace:
     )
     parser.add_argument("--case", type=int, action="append", help="the case of this number alone")
     parser.add_argument("--space", type=int, metavar="COUNT", help="so many fields in three dimensions alone")
+    parser.add_argument("--solids", type=int, metavar="COUNT", help="so many cases of each class with solids alone")
     parser.add_argument("--terms", action="store_true", help="whether every term of the error estimate is needed")
     return parser.parse_args()
 
@@ -57,6 +59,8 @@ def main(text: str) -> None:
     if options.space:
         print(in_space.summary(in_space.study(range(options.skip, options.skip + options.space), options.workers)))
         return
+    if options.solids:
+        options.kind, options.count = list(SOLID), options.solids
     if options.kind or options.case:
         ds = study(chosen(options), options.workers)
         print(report.class_table(ds), report.reasons(ds), report.faults(ds), sep="\n\n")

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from . import beams, faces, finite_elements, layered, media, paper, periodic, programs, quadrature, waveguides
+from . import beams, faces, finite_elements, layered, media, paper, periodic, programs, quadrature, solids, waveguides
 
 SECTIONS = (
     faces.SECTION,
     layered.SECTION,
     periodic.SECTION,
     waveguides.SECTION,
+    solids.SECTION,
     beams.SECTION,
     media.SECTION,
     paper.SECTION,
