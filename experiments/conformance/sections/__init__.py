@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from . import beams, faces, finite_elements, layered, media, paper, periodic, programs, quadrature, waveguides
+from . import (
+    beams,
+    faces,
+    finite_elements,
+    layered,
+    media,
+    paper,
+    periodic,
+    programs,
+    quadrature,
+    transducers,
+    waveguides,
+)
 
 SECTIONS = (
     faces.SECTION,
@@ -13,6 +25,7 @@ SECTIONS = (
     media.SECTION,
     paper.SECTION,
     quadrature.SECTION,
+    transducers.SECTION,
     finite_elements.SECTION,
     programs.SECTION,
 )
