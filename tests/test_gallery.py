@@ -1,24 +1,18 @@
 """The studies of the gallery: every number that a page states is its own result, rounded as it stands there, and holds what it says."""
 
 import ast
-import csv
 import importlib
-import io
 import re
 import runpy
 import sys
-from functools import cache
-from itertools import product
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from conformance.formulas import transducers
-from source_tree import CHECKOUT
+from gallery_results import GALLERY, result_of
 
 import beamprop as bp
 
-GALLERY = CHECKOUT / "experiments" / "gallery"
 #: The numbers of each page in the order of its text, by their names in the result of `study`.
 STATED = {
     "lateral_shift": "layers thickness_m fwhm_cm frequency_hz largest_centroid_mm largest_angle straight_ray_m least_width_cm "
@@ -49,14 +43,13 @@ STATED = {
     "half_wave_db wool_db",
     "transcranial": "khz BM1_kpa BM1_mm bone_mm BM3_kpa BM3_mm length_mm width_mm BM4_kpa BM4_mm profile_mm piston_BM1_kpa "
     "piston_BM3_kpa piston_BM4_kpa",
+    "round_beams": "fwhm_cm first_khz last_khz least_lossless_round_cm largest_lossless_round_cm least_lossy_round_cm "
+    "largest_lossy_round_cm least_air_cm largest_air_cm angle_45 least_lossy_x_cm largest_lossy_x_cm largest_lossless_x_cm angle_0 "
+    "angle_45 angle_85 lossless_along_percent lossless_across_percent lossy_along_percent lossy_across_percent lossless_flat_percent "
+    "lossy_flat_percent way_m air_growth",
 }
 #: A number in a text, with its sign; none of a name such as kx2.
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w])")
-
-
-@cache
-def result_of(name):
-    return importlib.import_module(name).study(quick=True)
 
 
 def text_of(name):
@@ -262,56 +255,3 @@ def test_a_narrow_beam_does_not_pass_a_plate_as_a_plane_wave():
     shares = r["shares"].transmitted
     assert bool((shares.diff("half_width") > 0).all())
     assert float(shares.max()) < 1e-4 * r["t_percent"] ** 2
-
-
-def table_of(text):
-    """Values of the transcranial benchmarks' table by benchmark and source, then by quantity, x and z."""
-    table = {}
-    for row in csv.DictReader(io.StringIO(text)):
-        place = row["quantity"], float(row["x [m]"] or "nan"), float(row["z [m]"] or "nan")
-        table.setdefault((row["benchmark"], row["source"]), {})[str(place)] = float(row["value"])
-    return table
-
-
-def shipped_table():
-    return table_of((GALLERY / "transcranial_table.csv").read_text(encoding="utf-8"))
-
-
-def test_the_shipped_table_is_the_study_of_the_transcranial_benchmarks():
-    """To a unit of the tenth digit, of points of the largest p among them."""
-    shipped, ours = shipped_table(), table_of(result_of("transcranial")["table"])
-    assert {case: set(values) for case, values in shipped.items()} == {c: set(v) for c, v in ours.items()}
-    assert [len(values) for values in shipped.values()] == 3 * [34] + 3 * [32]
-    for case, values in shipped.items():
-        largest = max(abs(value) for key, value in values.items() if " p'" in key)
-        for key, value in values.items():
-            assert abs(ours[case][key] - value) <= 1e-9 * (largest if " p'" in key else value), (case, key)
-
-
-@pytest.mark.parametrize("case", shipped_table(), ids=" ".join)
-def test_ten_digits_of_the_transcranial_benchmarks(case):
-    """Against panels of Gauss nodes over the radial wavenumber, admittances of the layers and bisection: nothing of the package."""
-    import transcranial as study
-
-    (name, source), tissues = case, study.TISSUES
-    spectrum = transducers.piston_spectrum(0.01) if source == "piston" else transducers.bowl_spectrum(0.064, 0.064)
-    layers = tuple((tissues[tissue], thickness) for tissue, thickness in study.LAYERS[name])
-    half_spaces = tissues["water"], tissues["brain" if name == "BM4" else "water"]
-    exact = transducers.Layered(np.pi * 1e6, study.START[name], layers, *half_spaces, spectrum)
-    table = shipped_table()[case]
-
-    def value(quantity):
-        return table[str((quantity, np.nan, np.nan))]
-
-    middle = exact.peak(0.05, 0.07) if source == "bowl" else 0.06
-    level = abs(exact.fields(np.zeros(1), middle)[0][0])
-    width = 2 * exact.half(level / 2, (0.001, 0.01), middle)
-    known = {"pressure": 60e3 * level, "width": width}
-    if source == "bowl":
-        ends = [exact.half(level / 2, window) for window in ((0.038, middle), (middle, 0.085))]
-        known |= {"position": middle, "length": ends[1] - ends[0]}
-    assert {quantity: value(quantity) for quantity in known} == pytest.approx(known, rel=5.1e-10)
-    p = 60e3 * np.array([exact.fields(study.X, z)[0] for z in study.Z])
-    for (i, z), (j, x) in product(enumerate(study.Z), enumerate(study.X)):
-        parts = [table[str((part, float(x), float(z)))] for part in ("Re p", "Im p")]
-        assert abs(complex(*parts) - p[i, j]) < 1e-9 * np.abs(p).max()
