@@ -2,6 +2,7 @@
 
 import csv
 import io
+import sys
 from itertools import product
 
 import numpy as np
@@ -94,3 +95,11 @@ def test_without_loss_round_beams_trail_guided_waves():
     slab, beam = study.MEDIA["lossless"], bp.GaussianBeam((study.FWHM, study.FWHM), 45.0)
     p = np.abs(polar_field(slab, float(widths.idxmax()), beam, (x, 0 * x), [slab.thickness], directions=200)[0])
     assert np.ptp(x[p > p.max() / 2]) == pytest.approx(float(widths.max()), abs=0.02)
+
+
+def test_the_peer_of_the_transcranial_benchmarks_says_what_to_install(monkeypatch):
+    import transcranial_peer
+
+    monkeypatch.setitem(sys.modules, "kwave", None)
+    with pytest.raises(SystemExit, match=r"pip install k-wave-python"):
+        transcranial_peer.k_wave()
