@@ -118,3 +118,12 @@ def test_files_bring_it_back(tmp_path):
     source = bp.Bowl(0.064, 0.064, 1 + 2j, z0=Z0)
     bp.save(bp.field(NOTHING, source, FREQUENCY, 0.0, [0.02, 0.1], y=0.0, rtol=1e-4), tmp_path / "p.nc")
     assert bp.provenance(bp.load(tmp_path / "p.nc"))["beam"] == source
+
+
+def test_a_lattice_is_made_wider_where_the_spectrum_has_no_end():
+    """In one fluid, where the first lattice does not keep a low rtol far beside the axis: O'Neil's closed form in the middle."""
+    source, x = bp.Bowl(0.064, 0.064, z0=-0.03), np.linspace(-0.03, 0.03, 101)
+    z, k = 0.06, 2 * np.pi * 0.5e6 / 1500.0
+    p = bp.field(NOTHING, source, 0.5e6, x, z - 0.03, y=0.0, rtol=1e-9).p.values
+    known = (np.exp(1j * k * z) - np.exp(1j * k * np.hypot(z - source.depth, 0.032))) * 0.064 / (0.064 - z)
+    assert abs(p[50] - known) < 1e-9 * abs(known)

@@ -5,16 +5,14 @@ import importlib
 import re
 import runpy
 import sys
-from functools import cache
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from source_tree import CHECKOUT
+from gallery_results import GALLERY, result_of
 
 import beamprop as bp
 
-GALLERY = CHECKOUT / "experiments" / "gallery"
 #: The numbers of each page in the order of its text, by their names in the result of `study`.
 STATED = {
     "lateral_shift": "layers thickness_m fwhm_cm frequency_hz largest_centroid_mm largest_angle straight_ray_m least_width_cm "
@@ -44,14 +42,15 @@ STATED = {
     "plate": "mm mhz angle t_percent half_width_mm power_percent peak reflected_percent wide_mm wide_percent",
     "double_wall": "leaf_kg depth_cm resonance_hz formula_hz oblique_hz oblique_angle at_hz double_db single_db half_wave_hz "
     "half_wave_db wool_db",
+    "transcranial": "khz BM1_kpa BM1_mm bone_mm BM3_kpa BM3_mm length_mm width_mm BM4_kpa BM4_mm profile_mm piston_BM1_kpa "
+    "piston_BM3_kpa piston_BM4_kpa",
+    "round_beams": "fwhm_cm first_khz last_khz least_lossless_round_cm largest_lossless_round_cm least_lossy_round_cm "
+    "largest_lossy_round_cm least_air_cm largest_air_cm angle_45 least_lossy_x_cm largest_lossy_x_cm largest_lossless_x_cm angle_0 "
+    "angle_45 angle_85 lossless_along_percent lossless_across_percent lossy_along_percent lossy_across_percent lossless_flat_percent "
+    "lossy_flat_percent way_m air_growth",
 }
 #: A number in a text, with its sign; none of a name such as kx2.
 NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?![\w])")
-
-
-@cache
-def result_of(name):
-    return importlib.import_module(name).study(quick=True)
 
 
 def text_of(name):

@@ -138,3 +138,6 @@ BRASS_IN_WATER = {
         (0.715147930, 0.013550305), (0.724232121, 0.011212257), (1.001694702, 0.0), (1.001695015, 0.0),
     ),
 }  # fmt: skip
+#: Stride on benchmark 4 of the transcranial intercomparison with the bowl (PH1-BM4-SC1 of doi:10.5281/zenodo.6020543), by the intercomparison's
+#: own functions: |p| (Pa) and z (m) of the focus on nodes 0.5 mm apart, -6 dB sizes along and across the axis (m).
+STRIDE_BOWL = {"pressure": 316738.57, "position": 0.057, "length": 0.02728874, "width": 0.00434409}

@@ -26,7 +26,7 @@ def panels(count: int, width: float = PAGE, height: float = 54.0) -> tuple[plt.F
 
 
 def main(study: Callable, picture: Callable) -> None:
-    """Print the numbers of a study and draw it; with --output, write them, its data and the picture there."""
+    """Print the numbers of a study and draw it; with --output, write its data, its tables and the picture there."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true", help="fewer points of curves and maps")
     parser.add_argument("--width", type=float, default=PAGE, help="of the picture [mm]")
@@ -34,7 +34,7 @@ def main(study: Callable, picture: Callable) -> None:
     options = parser.parse_args()
     result: dict[str, Any] = study(options.quick)
     for name, value in result.items():
-        if not isinstance(value, xr.Dataset):
+        if not isinstance(value, xr.Dataset | str):
             print(f"{name} = {value:.6g}")
     with plt.style.context("beamprop.plot.paper"):
         figure = picture(result, options.width)
@@ -46,3 +46,5 @@ def main(study: Callable, picture: Callable) -> None:
             for key, value in result.items():
                 if isinstance(value, xr.Dataset):
                     bp.save(value, options.output / f"{name}_{key}.nc")
+                elif isinstance(value, str):
+                    (options.output / f"{name}_{key}.csv").write_text(value, encoding="utf-8")

@@ -44,8 +44,8 @@ class Spectrum(NamedTuple):
     high: float
 
     def wider(self, more: float) -> Spectrum:
-        """Around the same middle."""
-        if more == 1 or math.isinf(self.high):
+        """Around the same middle; the spectrum of a sharp edge has no end."""
+        if more == 1 or not np.isfinite(self.box).all():
             return self
         middle, half = self.box.mean(axis=1), np.ptp(self.box, axis=1) / 2
         box = np.stack([middle - more * half, middle + more * half], axis=1)

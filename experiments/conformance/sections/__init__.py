@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
-from . import beams, faces, finite_elements, layered, media, paper, periodic, programs, quadrature, solids, waveguides
+from . import (
+    beams,
+    faces,
+    finite_elements,
+    layered,
+    media,
+    paper,
+    periodic,
+    programs,
+    quadrature,
+    solids,
+    transducers,
+    waveguides,
+)
 
 SECTIONS = (
     faces.SECTION,
@@ -14,6 +27,7 @@ SECTIONS = (
     media.SECTION,
     paper.SECTION,
     quadrature.SECTION,
+    transducers.SECTION,
     finite_elements.SECTION,
     programs.SECTION,
 )
