@@ -33,13 +33,22 @@ def bessel_zeros(first: int, count: int) -> tuple[np.ndarray, Any]:
     return zeros / math.pi, 2 / (math.pi * zeros * j1(zeros) ** 2)
 
 
-def lommel(q: np.ndarray, k: np.ndarray, radius: float) -> np.ndarray:
-    """M(q, k) of complex q (n,) and real k (t,), even in both: (n, t)."""
+def lommel(q: np.ndarray, k: np.ndarray, radius: float, weight: np.ndarray | float = 1.0) -> np.ndarray:
+    """M(q, k) of complex q (n,) and real k (t,), even in both, times a weight of each q: (n, t)."""
     from scipy.special import j0, j1, jv
 
-    first, last = radius * q * jv(1, radius * q), radius * jv(0, radius * q)
-    out = np.multiply.outer(first, j0(radius * k)) - np.multiply.outer(last, k * j1(radius * k))
-    out /= np.subtract.outer(q * q, k * k)
+    both = np.stack([q * jv(1, radius * q), -jv(0, radius * q)], axis=1) * (radius * weight * np.ones(q.shape))[:, None]
+    out = both @ (np.stack([j0(radius * k), k * j1(radius * k)]) + 0j)
+    # over q^2 - k^2, whose imaginary part depends on q alone
+    square = q * q
+    across, above = np.subtract.outer(square.real, k * k), square.imag[:, None]
+    size = across**2
+    size += above**2
+    np.reciprocal(size, out=size)
+    inverse = np.empty(out.shape, complex)
+    np.multiply(across, size, out=inverse.real)
+    np.multiply(-above, size, out=inverse.imag)
+    out *= inverse
     return out
 
 
