@@ -17,6 +17,9 @@ from typing import Any
 
 import numpy as np
 
+#: Numbers in a block that stays in the cache with its temporaries.
+BLOCK = 2**14
+
 
 def bessel_zeros(first: int, count: int) -> tuple[np.ndarray, Any]:
     """A `paths.Rule` for integrals of v g(v) dv over 0 < v, g even: the zeros of J0(pi v).
@@ -37,18 +40,20 @@ def lommel(q: np.ndarray, k: np.ndarray, radius: float, weight: np.ndarray | flo
     """M(q, k) of complex q (n,) and real k (t,), even in both, times a weight of each q: (n, t)."""
     from scipy.special import j0, j1, jv
 
-    both = np.stack([q * jv(1, radius * q), -jv(0, radius * q)], axis=1) * (radius * weight * np.ones(q.shape))[:, None]
-    out = both @ (np.stack([j0(radius * k), k * j1(radius * k)]) + 0j)
-    # over q^2 - k^2, whose imaginary part depends on q alone
-    square = q * q
-    across, above = np.subtract.outer(square.real, k * k), square.imag[:, None]
-    size = across**2
-    size += above**2
-    np.reciprocal(size, out=size)
-    inverse = np.empty(out.shape, complex)
-    np.multiply(across, size, out=inverse.real)
-    np.multiply(-above, size, out=inverse.imag)
-    out *= inverse
+    along_q = (
+        np.stack([q * jv(1, radius * q), -jv(0, radius * q)], axis=1) * (radius * weight * np.ones(q.shape))[:, None]
+    )
+    along_k = np.stack([j0(radius * k), k * j1(radius * k)]) + 0j
+    out, square, block = np.empty((q.size, k.size), complex), q * q, max(1, BLOCK // k.size)
+    for start in range(0, q.size, block):
+        part = slice(start, start + block)
+        # 1/(q^2 - k^2) by real numbers: the imaginary part depends on q alone
+        across, above = np.subtract.outer(square[part].real, k * k), square[part].imag[:, None]
+        size = 1 / (across**2 + above**2)
+        inverse = np.empty(across.shape, complex)
+        np.multiply(across, size, out=inverse.real)
+        np.multiply(-above, size, out=inverse.imag)
+        np.multiply(along_q[part] @ along_k, inverse, out=out[part])
     return out
 
 
