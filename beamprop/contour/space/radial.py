@@ -40,20 +40,17 @@ def lommel(q: np.ndarray, k: np.ndarray, radius: float, weight: np.ndarray | flo
     """M(q, k) of complex q (n,) and real k (t,), even in both, times a weight of each q: (n, t)."""
     from scipy.special import j0, j1, jv
 
-    along_q = (
-        np.stack([q * jv(1, radius * q), -jv(0, radius * q)], axis=1) * (radius * weight * np.ones(q.shape))[:, None]
-    )
-    along_k = np.stack([j0(radius * k), k * j1(radius * k)]) + 0j
+    scale = radius * np.broadcast_to(weight, q.shape)
+    along_q = np.stack([scale * q * jv(1, radius * q), -scale * jv(0, radius * q)], axis=1)
+    along_k = np.stack([j0(radius * k), k * j1(radius * k)])
     out, square, block = np.empty((q.size, k.size), complex), q * q, max(1, BLOCK // k.size)
-    for start in range(0, q.size, block):
+    for start in range(0, q.size, block):  # by real numbers: Im(q^2 - k^2) depends on q alone
         part = slice(start, start + block)
-        # 1/(q^2 - k^2) by real numbers: the imaginary part depends on q alone
+        real, imag = along_q[part].real @ along_k, along_q[part].imag @ along_k
         across, above = np.subtract.outer(square[part].real, k * k), square[part].imag[:, None]
         size = 1 / (across**2 + above**2)
-        inverse = np.empty(across.shape, complex)
-        np.multiply(across, size, out=inverse.real)
-        np.multiply(-above, size, out=inverse.imag)
-        np.multiply(along_q[part] @ along_k, inverse, out=out[part])
+        np.multiply(real * across + imag * above, size, out=out[part].real)
+        np.multiply(imag * across - real * above, size, out=out[part].imag)
     return out
 
 
