@@ -85,7 +85,7 @@ def whole(x_side=4.0, y_side=5.0):
     radii, of_point = lattice.radii_of(kx, ky, np.array([x_side, y_side]), (0.0, 200.0))
     table = lattice.interpolation(radii, 1.0, 8)
     nodes = table.radii
-    return lattice.Lattice(kx, ky, 1 / (x_side * y_side), of_point, table, np.eye(nodes.size) + 0j), nodes
+    return lattice.Lattice(kx, ky, 1 / (x_side * y_side), of_point, table, np.eye(nodes.size) + 0j, {}), nodes
 
 
 @pytest.mark.parametrize("by_rows", [False, True])

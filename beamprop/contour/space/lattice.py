@@ -60,11 +60,18 @@ class Lattice(NamedTuple):
     of_point: np.ndarray  #: (Ny, Nx), index of the radius of each point, u where h_L is not needed
     table: Table  #: to u radii
     kernel: np.ndarray  #: (n, t), from the contour's nodes to the table
+    known: dict[
+        float, np.ndarray
+    ]  #: spectra by angle, kept for all sums on the lattice: those of arrays and pistons take longer than sums
 
-    def spectra(self, k0: float, beams: AngleInterpolation) -> np.ndarray:
-        """S dkx dky/(2 pi)^2 of all beams: (B, Ny, Nx)."""
+    def spectra(self, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
+        """S dkx dky/(2 pi)^2 of all beams of the lattice's source: (Ny, Nx) each."""
         kx, ky = self.kx[None, :], self.ky[:, None]
-        return np.stack([self.area * beams.at(float(a)).spectrum_at(kx, ky, k0) for a in beams.angles])  # type: ignore[attr-defined]
+        for angle in map(float, beams.angles):
+            if angle not in self.known:
+                beam: Any = beams.at(angle)
+                self.known[angle] = self.area * beam.spectrum_at(kx, ky, k0)
+        return [self.known[float(a)] for a in beams.angles]
 
     def at_radii(self, h: np.ndarray) -> np.ndarray:
         """h_L of h (Z, n) at the radii, and 0: (Z, u + 1), to be taken at `of_point`."""
@@ -124,7 +131,9 @@ def positions_for(rtol: float) -> int:
     return next(count for above, count in POSITIONS if rtol >= above)
 
 
-def fields(lattice: Lattice, spectra: np.ndarray, h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray) -> None:
+def fields(
+    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+) -> None:
     """p of all beams on the planes of h (Z, n), at every (y, x), into out (B, Z, Y, X): two matrix products a plane."""
     over_x, over_y = along(lattice.kx, x), along(lattice.ky, y)
     for i, values in enumerate(lattice.at_radii(h)):
@@ -142,7 +151,9 @@ def _plane(waves: np.ndarray, over_x: Along, over_y: Along, into: np.ndarray) ->
         into[...] = over_x.sum(np.ascontiguousarray(over_y.sum(waves).T)).T
 
 
-def rows(lattice: Lattice, spectra: np.ndarray, h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray) -> None:
+def rows(
+    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+) -> None:
     """What `fields` gives, by rows: at each y the lattice is summed over ky once for all planes."""
     over_x, few = along(lattice.kx, x), len(h) < len(lattice.kernel)
     left = product(h, lattice.kernel) if few else lattice.kernel

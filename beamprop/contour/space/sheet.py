@@ -217,4 +217,4 @@ def _lattice(contour: Contour, reached: Reached, goal: float) -> Lattice:
     kernel = radial.lommel(contour.k, table.radii, radius, contour.weight)
     if math.isfinite(softness):
         kernel *= radial.passed(table.radii, 0.0, high, softness)
-    return Lattice(kx, ky, 1 / float(np.prod(windows)), of_point, table, kernel)
+    return Lattice(kx, ky, 1 / float(np.prod(windows)), of_point, table, kernel, {})
