@@ -27,7 +27,7 @@ CUT, SECOND_CUT, POWER = 1e-3, 1e-5, 12
 FARTHER, WIDER, SOFTER = 1.03, 1.06, 1.25
 #: Of the filter's fall, u = sqrt(ln(10/rtol)) widths on either side of its middle, the part inside the band: there S has fallen already.
 INSIDE = 0.3
-#: The most points of a lattice: 16 bytes each for a few arrays, and 200 each for what carries h to it.
+#: The most points of a lattice: 8 or 16 bytes each for six arrays.
 MOST_POINTS = 4_000_000
 
 
