@@ -70,7 +70,7 @@ class SpaceWaves(NamedTuple):
         strongest = np.max(np.abs(grid.spectra(self.k0, self.sources)), axis=0)
         at_radii = np.bincount(grid.of_point.ravel(), strongest.ravel(), len(grid.table.columns) + 1)
         by_radius = grid.table.matrix.T @ at_radii[:-1]
-        return np.asarray(np.sqrt((np.abs(grid.kernel) ** 2) @ by_radius**2))
+        return np.asarray(np.sqrt((grid.kernel.real**2 + grid.kernel.imag**2) @ by_radius**2))
 
     def fill(self, h: np.ndarray, out: np.ndarray) -> None:
         """By rows y where there are fewer of them than planes, else by planes."""
