@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -251,20 +251,52 @@ def _fill_low_rank(
     chosen = cross(weighted, max(0.01 * rtol * math.exp(-growth), 3e-15), MOST_ROWS)
     rows, columns = chosen.rows, chosen.columns
     at_columns = transfer(k[columns], z)
-    summed = np.empty((out.shape[0], rows.size + compared.size, waves.points), complex)
-    waves.fill(h[np.concatenate([rows, searched.size + np.arange(compared.size)])], summed)
-    of_rows, reference = summed[:, : rows.size], summed[:, rows.size :]
-    scale = np.max(np.abs(reference), axis=2)
-    scale = np.where(scale > DARK, scale, np.inf)
+    own = np.concatenate([rows, searched.size + np.arange(compared.size)])
+    _fill_planes(waves, h[own], np.concatenate([searched[rows], compared]), out)
     room = rtol - quadrature.worst  # what the contour has left of rtol, if it keeps it
     allowed = min(0.1 * rtol, room) if room > 0 else 0.1 * rtol
     for count in sorted({chosen.within(2e-4 * rtol), rows.size}):  # most fields are not magnified by the growth's bound
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):  # what is not finite is not allowed
             weights = row_weights(at_columns[:, :count], h[rows[:count]][:, columns[:count]])
-            for fields, into in zip(of_rows, out, strict=True):
-                np.matmul(weights, fields[:count], out=into)
-            error = UNSEEN * np.max(np.max(np.abs(out[:, compared] - reference), axis=2) / scale, axis=1)
+            error = UNSEEN * _apart(weights[compared], searched[rows[:count]], compared, out)
         error = np.maximum(error, 3e-4 * rtol)
         if np.max(error) <= allowed:
+            for beam, part in _parts(out):
+                np.matmul(weights, beam[searched[rows[:count]], part], out=beam[:, part])
             return error
     return None
+
+
+#: Values of the sums that are held at a time beside the map, 8 MB, where a plane has so many positions that what its sums share is little;
+#: and of a part of all planes, whose products stay in the cache.
+HELD, LARGE_PLANE, PART = 2**19, 2**13, 2**18
+
+
+def _fill_planes(waves: Waves, h: np.ndarray, planes: np.ndarray, out: np.ndarray) -> None:
+    """Sums on planes (P,), whose h is (P, n), into their places in a map: no memory for all of them beside it."""
+    block = max(1, HELD // (out.shape[0] * waves.points)) if waves.points > LARGE_PLANE else max(1, planes.size)
+    for start in range(0, planes.size, block):
+        part = planes[start : start + block]
+        summed = np.empty((out.shape[0], part.size, waves.points), complex)
+        waves.fill(h[start : start + block], summed)
+        out[:, part] = summed
+
+
+def _parts(out: np.ndarray) -> Iterator[tuple[np.ndarray, slice]]:
+    """Maps (Z, X) of each beam, and parts of their positions."""
+    size = max(256, PART // out.shape[1])
+    for beam in out:
+        for start in range(0, out.shape[2], size):
+            yield beam, slice(start, start + size)
+
+
+def _apart(weights: np.ndarray, rows: np.ndarray, compared: np.ndarray, out: np.ndarray) -> np.ndarray:
+    """How far combinations of the rows of a map are from its planes `compared`, over the largest |p| of a plane: (A,)."""
+    apart, scale = np.zeros((2, out.shape[0], compared.size))
+    for i, fields in enumerate(out):
+        for _, part in _parts(out[i : i + 1]):
+            reference = fields[compared, part]
+            difference = weights @ fields[rows, part] - reference
+            apart[i] = np.maximum(apart[i], np.max(np.abs(difference), axis=1))
+            scale[i] = np.maximum(scale[i], np.max(np.abs(reference), axis=1))
+    return np.asarray(np.max(apart / np.where(scale > DARK, scale, np.inf), axis=1))

@@ -68,9 +68,10 @@ class SpaceWaves(NamedTuple):
     def strengths(self) -> np.ndarray:
         """|w M| of each node at the radii of the strongest plane waves of the lattice, roughly."""
         grid = self.quadrature.contour.lattice
-        strongest = np.max(np.abs(grid.spectra(self.k0, self.sources)), axis=0).ravel()[grid.inside]
-        by_radius = grid.carried.T @ strongest
-        return np.asarray(np.sqrt((np.abs(grid.kernel) ** 2) @ by_radius**2))
+        strongest = np.max(np.abs(grid.spectra(self.k0, self.sources)), axis=0)
+        at_radii = np.bincount(grid.of_point.ravel(), strongest.ravel(), len(grid.table.columns) + 1)
+        by_radius = grid.table.matrix.T @ at_radii[:-1]
+        return np.asarray(np.sqrt((grid.kernel.real**2 + grid.kernel.imag**2) @ by_radius**2))
 
     def fill(self, h: np.ndarray, out: np.ndarray) -> None:
         """By rows y where there are fewer of them than planes, else by planes."""
@@ -79,19 +80,15 @@ class SpaceWaves(NamedTuple):
         by_interpolation = sources.weights is not None
         summed = np.empty((sources.angles.size, *out.shape[1:]), complex) if by_interpolation else out
         view = summed.reshape(*summed.shape[:2], self.y.size, self.x.size)
-        if ROW_OVER_PLANE * self.y.size < h.shape[0]:
-            for beam, spectrum in enumerate(spectra):
-                for row, y in enumerate(self.y):
-                    view[beam, :, row] = h @ lattice.waves_at(grid, spectrum, self.x, float(y))
-        else:
-            lattice.fields(grid, spectra, h, self.x, self.y, view)
+        fields = lattice.rows if ROW_OVER_PLANE * self.y.size < h.shape[0] else lattice.fields
+        fields(grid, spectra, h, self.x, self.y, view)
         evaluate.check_finite(summed)
         if by_interpolation:
             sources.interpolated_to(summed, out)
 
 
-#: A row y of all planes costs about as much as so many planes of all rows: experiments/benchmarks/space.py measures 1.4 to 2.1.
-ROW_OVER_PLANE = 1.5
+#: A row y of all planes costs about as much as so many planes of all rows: experiments/benchmarks/space.py measures 4.9 to 7.2.
+ROW_OVER_PLANE = 5
 
 
 def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:

@@ -62,9 +62,9 @@ def row_over_plane(beam: bp.GaussianBeam) -> float:
     waves = prepare(question, 0).waves
     grid = waves.quadrature.contour.lattice
     spectra, h = grid.spectra(waves.k0, waves.sources), np.ones((500, waves.quadrature.contour.k.size), complex)
-    out = np.empty((1, 4, 500, 500), complex)
+    out, of_row = np.empty((1, 4, 500, 500), complex), np.empty((1, 500, 1, 500), complex)
     row, planes = measure(
-        lambda: h @ lattice.waves_at(grid, spectra[0], x, 0.3),
+        lambda: lattice.rows(grid, spectra, h, x, x[200:201], of_row),
         lambda: lattice.fields(grid, spectra, h[:4], x, x, out),
         repeats=3,
     )

@@ -3,6 +3,8 @@
     p(x, y) = sum S(kx, ky) h_L(|k|) exp(i kx x + i ky y) dkx dky/(2 pi)^2
 
 is p0 * G_L, and its images in steps of 2 pi/dkx and 2 pi/dky: these lie farther off than L where the steps are fine enough.
+
+h_L depends on |k| alone, and many points of a lattice have the same |k|: it is formed once for each of them.
 """
 
 from __future__ import annotations
@@ -14,12 +16,39 @@ import numpy as np
 
 from ...arrays.matmul import product
 from ...sources.angles import AngleInterpolation
+from .along import Along, along
 
 #: Steps of the table of h_L, over pi/L, and positions from which it is interpolated by rtol: h_L is an entire function of type L, and
-#: Lagrange's polynomial through 8, 10, 12 and 14 positions errs by 6e-9, 9e-11, 1e-12 and 2e-14 (tests/test_space_pieces.py). That is over the
+#: Lagrange's polynomial through 10, 12, 14 and 16 positions errs by 2e-9, 4e-11, 1e-12 and 3e-14 (tests/test_space_pieces.py). That is over the
 #: launched |p|, which may be a hundred times the largest on a plane; a goal that is missed takes more positions at the next try.
-FINE = 12
-POSITIONS = ((1e-5, 8), (1e-7, 10), (1e-9, 12), (0.0, 14))
+FINE = 9
+POSITIONS = ((1e-5, 10), (1e-7, 12), (1e-9, 14), (0.0, 16))
+
+
+class Table(NamedTuple):
+    """Even radii, and Lagrange's polynomials through the nearest of them for each of others (u,)."""
+
+    radii: np.ndarray  #: (t,)
+    columns: np.ndarray  #: (u, q), indices of those that are used
+    weights: np.ndarray  #: (u, q)
+
+    @property
+    def matrix(self) -> Any:
+        """Sparse (u, t)."""
+        return self._spread(self.columns, self.weights, self.radii.size)
+
+    def by_columns(self, points: np.ndarray, groups: np.ndarray, count: int) -> Any:
+        """What adds up values (p, ...) at radii `points`, in `count` groups, at the table's: sparse (t count, p)."""
+        return self._spread(
+            self.columns[points] * count + groups[:, None], self.weights[points], self.radii.size * count
+        ).T
+
+    @staticmethod
+    def _spread(columns: np.ndarray, weights: np.ndarray, size: int) -> Any:
+        from scipy.sparse import csr_array
+
+        rows = np.arange(len(columns) + 1) * columns.shape[1]
+        return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(columns), size))
 
 
 class Lattice(NamedTuple):
@@ -28,20 +57,28 @@ class Lattice(NamedTuple):
     kx: np.ndarray  #: (Nx,)
     ky: np.ndarray  #: (Ny,)
     area: float  #: dkx dky/(2 pi)^2
-    inside: np.ndarray  #: indices (m,) of the points with h_L, in an array (Ny, Nx)
-    carried: Any  #: sparse (m, t), from radii of the table to these points
-    kernel: np.ndarray | None  #: (n, t), from the contour's nodes to the radii; None where these are the nodes
+    of_point: np.ndarray  #: (Ny, Nx), index of the radius of each point, u where h_L is not needed
+    table: Table  #: to u radii
+    kernel: np.ndarray  #: (n, t), from the contour's nodes to the table
+    known: dict[
+        float, np.ndarray
+    ]  #: spectra by angle, kept for all sums on the lattice: those of arrays and pistons take longer than sums
 
-    def spectra(self, k0: float, beams: AngleInterpolation) -> np.ndarray:
-        """S dkx dky/(2 pi)^2 of all beams: (B, Ny, Nx)."""
+    def spectra(self, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
+        """S dkx dky/(2 pi)^2 of all beams of the lattice's source: (Ny, Nx) each."""
         kx, ky = self.kx[None, :], self.ky[:, None]
-        return np.stack([self.area * beams.at(float(a)).spectrum_at(kx, ky, k0) for a in beams.angles])  # type: ignore[attr-defined]
+        for angle in map(float, beams.angles):
+            if angle not in self.known:
+                beam: Any = beams.at(angle)
+                self.known[angle] = self.area * beam.spectrum_at(kx, ky, k0)
+        return [self.known[float(a)] for a in beams.angles]
 
-    def on_lattice(self, h: np.ndarray) -> np.ndarray:
-        """h_L of h (Z, n) at the points inside: (Z, m)."""
-        table = h if self.kernel is None else product(h, self.kernel)
-        columns = np.ascontiguousarray(table.T).view(float)  # real pairs: half the products
-        return np.ascontiguousarray((self.carried @ columns).view(complex).T)
+    def at_radii(self, h: np.ndarray) -> np.ndarray:
+        """h_L of h (Z, n) at the radii, and 0: (Z, u + 1), to be taken at `of_point`."""
+        columns = np.ascontiguousarray(product(h, self.kernel).T).view(float)  # real pairs: half the products
+        out = np.zeros((len(h), len(self.table.columns) + 1), complex)
+        out[:, :-1] = (self.table.matrix @ columns).view(complex).T
+        return out
 
 
 def multiples(low: float, high: float, window: float) -> np.ndarray:
@@ -51,33 +88,42 @@ def multiples(low: float, high: float, window: float) -> np.ndarray:
     return step * np.arange(first, max(first, math.floor(high / step)) + 1)
 
 
-def radii_inside(kx: np.ndarray, ky: np.ndarray, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
-    """Indices of the lattice's points with low <= |k| <= high, and their |k|: (m,) each."""
-    radii = np.hypot(kx[None, :], ky[:, None]).ravel()
-    inside = np.flatnonzero((radii >= low) & (radii <= high))
-    return inside, radii[inside]
+def radii_of(
+    kx: np.ndarray, ky: np.ndarray, windows: np.ndarray, ends: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The |k| between both `ends` of the lattice's points, each once, (u,); and their indices for all points, u outside, (Ny, Nx).
+
+    Points that are mirrored at an axis have the same |k|, and where both windows are equal all those with the same nx^2 + ny^2.
+    """
+    nx, ny = (np.abs(np.rint(k * w / (2 * math.pi)).astype(int)) for k, w in zip((kx, ky), windows, strict=True))
+    if windows[0] == windows[1]:
+        key = nx**2 + ny[:, None] ** 2
+        size = 2 * math.pi / windows[0] * np.sqrt(np.arange(key.max() + 1))
+    else:
+        columns = int(nx.max()) + 1
+        key = nx + columns * ny[:, None]
+        along_x, along_y = (2 * math.pi / w * np.arange(n.max() + 1) for w, n in zip(windows, (nx, ny), strict=True))
+        size = np.hypot(along_x, along_y[:, None]).ravel()
+    needed = np.zeros(size.size, bool)
+    needed[key] = True
+    needed &= (size >= ends[0]) & (size <= ends[1])
+    index = np.where(needed, np.cumsum(needed) - 1, np.count_nonzero(needed))
+    return size[needed], index[key]
 
 
-def interpolation(radii: np.ndarray, step: float, positions: int) -> tuple[np.ndarray, Any]:
-    """Even positions (t,), by `step`, and the sparse matrix (m, t) of Lagrange's polynomials through the nearest ones."""
-    from scipy.sparse import csr_array
-
+def interpolation(radii: np.ndarray, step: float, positions: int) -> Table:
+    """Even positions by `step`, and Lagrange's polynomials through so many nearest ones of each radius."""
     base = np.floor(radii / step).astype(int) - positions // 2 + 1
-    away = radii / step - base
-    first, last = int(base.min(initial=0)), int(base.max(initial=0))
-    differences = away - np.arange(positions)[:, None]
+    differences = radii / step - base - np.arange(positions)[:, None]
     weights = np.ones(differences.shape)
     np.cumprod(differences[:-1], axis=0, out=weights[1:])
-    after = np.cumprod(differences[:0:-1], axis=0)[::-1]
-    weights[:-1] *= after
+    weights[:-1] *= np.cumprod(differences[:0:-1], axis=0)[::-1]
     whole = np.arange(positions)
     scale = [(-1) ** (positions - 1 - j) * math.factorial(j) * math.factorial(positions - 1 - j) for j in whole]
     weights /= np.array(scale, float)[:, None]
-    columns = (base - first)[:, None] + whole
-    size = last - first + positions
-    rows = np.arange(radii.size + 1) * positions
-    matrix = csr_array((weights.T.ravel(), columns.ravel(), rows), shape=(radii.size, size))
-    return step * (first + np.arange(size)), matrix
+    first, last = int(base.min(initial=0)), int(base.max(initial=0))
+    nodes = step * (first + np.arange(last - first + positions))
+    return Table(nodes, (base - first)[:, None] + whole, np.ascontiguousarray(weights.T))
 
 
 def positions_for(rtol: float) -> int:
@@ -85,29 +131,48 @@ def positions_for(rtol: float) -> int:
     return next(count for above, count in POSITIONS if rtol >= above)
 
 
-def fields(lattice: Lattice, spectra: np.ndarray, h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray) -> None:
+def fields(
+    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+) -> None:
     """p of all beams on the planes of h (Z, n), at every (y, x), into out (B, Z, Y, X): two matrix products a plane."""
-    along_x, along_y = np.exp(1j * np.outer(lattice.kx, x)), np.exp(1j * np.outer(y, lattice.ky))
-    x_first = (
-        lattice.ky.size * lattice.kx.size * (x.size - y.size) + y.size * x.size * (lattice.ky.size - lattice.kx.size)
-        < 0
-    )
-    plane = np.zeros(lattice.ky.size * lattice.kx.size, complex)
-    for i, values in enumerate(lattice.on_lattice(h)):
-        plane[lattice.inside] = values
+    over_x, over_y = along(lattice.kx, x), along(lattice.ky, y)
+    for i, values in enumerate(lattice.at_radii(h)):
+        plane = values[lattice.of_point]
         for spectrum, into in zip(spectra, out[:, i], strict=True):
-            waves = spectrum * plane.reshape(spectrum.shape)
-            into[...] = along_y @ (waves @ along_x) if x_first else (along_y @ waves) @ along_x
+            _plane(spectrum * plane, over_x, over_y, into)
 
 
-def waves_at(lattice: Lattice, spectrum: np.ndarray, x: np.ndarray, y: float) -> np.ndarray:
-    """What makes p(z, x) of h at one y, as h @ it: (n, X), summed over ky once for all planes."""
-    weights = (spectrum * np.exp(1j * lattice.ky * y)[:, None]).ravel()[lattice.inside]
-    table, columns = lattice.carried.shape[1], lattice.kx.size
-    each = np.diff(lattice.carried.indptr)
-    at = lattice.carried.indices * columns + np.repeat(lattice.inside % columns, each)
-    summed = np.empty((table, columns), complex)
-    for part, of in ((summed.real, weights.real), (summed.imag, weights.imag)):
-        part[...] = np.bincount(at, lattice.carried.data * np.repeat(of, each), table * columns).reshape(table, columns)
-    along = np.exp(1j * np.outer(lattice.kx, x))
-    return product(summed, along) if lattice.kernel is None else product(product(lattice.kernel, summed), along)
+def _plane(waves: np.ndarray, over_x: Along, over_y: Along, into: np.ndarray) -> None:
+    """p(y, x) of plane waves (Ny, Nx): the sum that lessens them more comes first."""
+    (Y, Ny), (X, Nx) = over_y.shape, over_x.shape
+    if Nx * X * Ny + Ny * Y * X <= Ny * Y * Nx + Nx * X * Y:
+        over_y.sum(np.ascontiguousarray(over_x.sum(np.ascontiguousarray(waves.T)).T), into)
+    else:
+        into[...] = over_x.sum(np.ascontiguousarray(over_y.sum(waves).T)).T
+
+
+def rows(
+    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+) -> None:
+    """What `fields` gives, by rows: at each y the lattice is summed over ky once for all planes."""
+    over_x, few = along(lattice.kx, x), len(h) < len(lattice.kernel)
+    left = product(h, lattice.kernel) if few else lattice.kernel
+    for spectrum, beam in zip(spectra, out, strict=True):
+        for j, at in enumerate(y):
+            waves = product(left, _over_ky(lattice, spectrum, float(at)))
+            summed = over_x.sum(np.ascontiguousarray(waves.T)).T
+            beam[:, j] = summed if few else product(h, summed)
+
+
+def _over_ky(lattice: Lattice, spectrum: np.ndarray, y: float) -> np.ndarray:
+    """What makes plane waves along x of a table of h_L, as table @ it: (t, Nx)."""
+    waves, columns = spectrum * np.exp(1j * lattice.ky * y)[:, None], lattice.kx.size
+    distinct, at = np.unique(np.abs(lattice.ky), return_inverse=True)
+    folded, of_point = np.zeros((distinct.size, columns), complex), np.empty((distinct.size, columns), int)
+    of_point[at] = lattice.of_point
+    for side in (lattice.ky >= 0, lattice.ky < 0):
+        folded[at[side]] += waves[side]
+    inside = np.flatnonzero(of_point < len(lattice.table.columns))
+    carried = lattice.table.by_columns(of_point.ravel()[inside], inside % columns, columns)
+    summed = carried @ folded.ravel()[inside].view(float).reshape(-1, 2)
+    return np.ascontiguousarray(summed).view(complex).reshape(-1, columns)

@@ -17,6 +17,9 @@ from typing import Any
 
 import numpy as np
 
+#: Numbers in a block that stays in the cache with its temporaries.
+BLOCK = 2**14
+
 
 def bessel_zeros(first: int, count: int) -> tuple[np.ndarray, Any]:
     """A `paths.Rule` for integrals of v g(v) dv over 0 < v, g even: the zeros of J0(pi v).
@@ -33,13 +36,21 @@ def bessel_zeros(first: int, count: int) -> tuple[np.ndarray, Any]:
     return zeros / math.pi, 2 / (math.pi * zeros * j1(zeros) ** 2)
 
 
-def lommel(q: np.ndarray, k: np.ndarray, radius: float) -> np.ndarray:
-    """M(q, k) of complex q (n,) and real k (t,), even in both: (n, t)."""
+def lommel(q: np.ndarray, k: np.ndarray, radius: float, weight: np.ndarray | float = 1.0) -> np.ndarray:
+    """M(q, k) of complex q (n,) and real k (t,), even in both, times a weight of each q: (n, t)."""
     from scipy.special import j0, j1, jv
 
-    first, last = radius * q * jv(1, radius * q), radius * jv(0, radius * q)
-    out = np.multiply.outer(first, j0(radius * k)) - np.multiply.outer(last, k * j1(radius * k))
-    out /= np.subtract.outer(q * q, k * k)
+    scale = radius * np.broadcast_to(weight, q.shape)
+    along_q = np.stack([scale * q * jv(1, radius * q), -scale * jv(0, radius * q)], axis=1)
+    along_k = np.stack([j0(radius * k), k * j1(radius * k)])
+    out, square, block = np.empty((q.size, k.size), complex), q * q, max(1, BLOCK // k.size)
+    for start in range(0, q.size, block):  # by real numbers: Im(q^2 - k^2) depends on q alone
+        part = slice(start, start + block)
+        real, imag = along_q[part].real @ along_k, along_q[part].imag @ along_k
+        across, above = np.subtract.outer(square[part].real, k * k), square[part].imag[:, None]
+        size = 1 / (across**2 + above**2)
+        np.multiply(real * across + imag * above, size, out=out[part].real)
+        np.multiply(imag * across - real * above, size, out=out[part].imag)
     return out
 
 

@@ -27,7 +27,7 @@ CUT, SECOND_CUT, POWER = 1e-3, 1e-5, 12
 FARTHER, WIDER, SOFTER = 1.03, 1.06, 1.25
 #: Of the filter's fall, u = sqrt(ln(10/rtol)) widths on either side of its middle, the part inside the band: there S has fallen already.
 INSIDE = 0.3
-#: The most points of a lattice: 16 bytes each for a few arrays, and 200 each for what carries h to it.
+#: The most points of a lattice: 8 or 16 bytes each for six arrays.
 MOST_POINTS = 4_000_000
 
 
@@ -212,9 +212,9 @@ def _lattice(contour: Contour, reached: Reached, goal: float) -> Lattice:
     """The lattice of a contour: it ends where the source's spectrum does, or by a filter."""
     spectrum, windows, radius, high, softness = reached
     kx, ky = (lattice.multiples(ends[0], ends[1], float(w)) for ends, w in zip(spectrum.box, windows, strict=True))
-    inside, radii = lattice.radii_inside(kx, ky, spectrum.low, spectrum.high)
-    table, carried = lattice.interpolation(radii, math.pi / (lattice.FINE * radius), lattice.positions_for(goal))
-    kernel = radial.lommel(contour.k, table, radius) * contour.weight[:, None]
+    radii, of_point = lattice.radii_of(kx, ky, windows, (spectrum.low, spectrum.high))
+    table = lattice.interpolation(radii, math.pi / (lattice.FINE * radius), lattice.positions_for(goal))
+    kernel = radial.lommel(contour.k, table.radii, radius, contour.weight)
     if math.isfinite(softness):
-        kernel *= radial.passed(table, 0.0, high, softness)
-    return Lattice(kx, ky, 1 / float(np.prod(windows)), inside, carried, kernel)
+        kernel *= radial.passed(table.radii, 0.0, high, softness)
+    return Lattice(kx, ky, 1 / float(np.prod(windows)), of_point, table, kernel, {})
