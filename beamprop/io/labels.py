@@ -13,6 +13,7 @@ COORDINATES: dict[str, tuple[str, str]] = {
     "kx": ("rad/m", "lateral wavenumber"),
     "kx_over_k0": ("1", "lateral wavenumber over that of the medium in front"),
     "mode": ("1", "number of the guided mode"),
+    "axis": ("1", "direction along which a width or a place is taken"),
     "side": ("1", "reflected beam at the near face, or transmitted beam at the far face"),
 }
 
@@ -109,6 +110,7 @@ COMPARISON: dict[str, tuple[str, str]] = {
     "scale": ("1", "complex factor that brings b nearest to a"),
     "largest_error": ("1", "largest |a - b| over the largest |a|"),
     "largest_error_x": ("m", "lateral position of the largest error"),
+    "largest_error_y": ("m", "lateral position across x of the largest error"),
     "largest_error_z": ("m", "depth of the largest error"),
     "fwhm_a": ("m", "full width at half maximum of |a|"),
     "fwhm_b": ("m", "full width at half maximum of |b|"),

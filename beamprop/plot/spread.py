@@ -121,7 +121,7 @@ def said(v: xr.DataArray | xr.Dataset, dim: str, index: int, digits: int = 4) ->
     if not is_number(v[dim]):
         return str(value)
     value = float(value if value == np.round(value) else f"{value:.{digits}g}")
-    if unit in ("Hz", "degree"):
+    if unit in ("Hz", "degree") and dim != "azimuth":
         return units.quantity(value, unit)
     text = units.number(value) if unit in ("", "1") else units.quantity(value, unit)
     return f"{SHORT.get(dim, dim.replace('_', ' '))} = {text}"
