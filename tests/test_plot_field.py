@@ -246,8 +246,10 @@ def test_planes_of_a_volume(at, upright, level, title, monkeypatch):
     assert faults(ax.figure, monkeypatch) == []
 
 
-def test_volumes_are_refused():
+def test_what_volumes_are_refused_for(tmp_path):
     with pytest.raises(ValueError, match=r"^ds: .* in a volume: select one of y, x or z$"):
-        bp.plot.field(volume())
+        bp.plot.animate(volume(), tmp_path / "a.gif")
+    with pytest.raises(ValueError, match=r"^half_level: expected False for a volume, got True"):
+        bp.plot.field(volume(), half_level=True)
     with pytest.raises(ValueError, match=r"^half_level: expected False for a plane at one z"):
         bp.plot.field(volume().isel(z=3), half_level=True)

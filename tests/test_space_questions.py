@@ -69,11 +69,10 @@ def test_a_beam_of_three_dimensions_needs_y(beam, ask):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"boundary": "periodic"}, "boundary: expected 'open' where y is given"),
         ({"boundary": "closed"}, "boundary: expected 'open' or 'periodic'"),
         ({"period": 2.0}, "period: expected none"),
-        ({"variables": "v_x"}, "variables: expected 'p' alone where y is given"),
-        ({"variables": ["p", "v_z"]}, "variables: expected 'p' alone where y is given"),
+        ({"variables": "power_through"}, "variables: expected some of p, v_x, v_y, v_z"),
+        ({"average": "layer"}, "average: expected 'cell'"),
         ({"y": "wide"}, "y: expected"),
         ({"y": np.zeros((2, 2))}, "y: expected"),
         ({"y": np.nan}, "y: expected"),

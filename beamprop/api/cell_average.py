@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from ..contour.error import DARK, ErrorBudget
+from ..fields.in_space import SpaceQuestion
 from ..fields.question import FieldQuestion
 from ..media.planes import CellMeans, cell_means
 from .field_variables import Row, kinds, row_of
@@ -31,6 +33,7 @@ class AveragedRow(NamedTuple):
     def fill(self, planes: slice, angles: slice, out: dict[str, np.ndarray]) -> dict[str, ErrorBudget]:
         """As `Row.fill`."""
         total: dict[str, ErrorBudget] = {}
+        out = {name: v.reshape(*v.shape[:2], -1) for name, v in out.items()}
         ends = np.append(self.means.first, self.means.z.size)
         begin, stop, _ = planes.indices(self.means.first.size)
         start = begin
@@ -66,7 +69,9 @@ class AveragedRow(NamedTuple):
         return budgets
 
 
-def averaged_row(question: FieldQuestion, i: int, variables: tuple[str, ...], average: str | None) -> Row | AveragedRow:
+def averaged_row(
+    question: FieldQuestion | SpaceQuestion, i: int, variables: tuple[str, ...], average: str | None
+) -> Row | AveragedRow:
     """The contours at frequency i, of the planes themselves or of the means over a cell."""
     on_map = tuple(kinds(variables))
     means = cell_means(question.slab, question.z, 1) if average and on_map else None
@@ -78,7 +83,9 @@ def averaged_row(question: FieldQuestion, i: int, variables: tuple[str, ...], av
         means = cell_means(question.slab, question.z, nodes)
         finer = cell_means(question.slab, question.z[checked], nodes + 1)
         row = row_of(dataclasses.replace(question, z=np.concatenate([means.z, finer.z])), i, variables)
-        rule = _difference(AveragedRow(row, means, {}), finer, checked, (question.angle.size, question.x.size))
+        rule = _difference(
+            AveragedRow(row, means, {}), finer, checked, (question.angle.size, math.prod(question.shape[3:]))
+        )
         if max(float(np.max(error)) for error in rule.values()) <= SHARE * question.rtol:
             break
     return AveragedRow(row, means, rule)

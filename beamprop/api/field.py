@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,13 +10,14 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
+from ..fields.question import FieldQuestion
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks
 from .cell_average import averaged_row
-from .field_in_space import field_in_space, question_in_space, refuse_options
-from .field_question import checked_question, labelled
+from .field_in_space import question_at
+from .field_question import labelled
 from .field_variables import bytes_held, kinds, no_errors, of_component, powers
 
 
@@ -27,7 +29,7 @@ def field(
     z: Any,
     angle: Any = None,
     boundary: str = "open",
-    period: float | None = None,
+    period: float | tuple[float, float] | None = None,
     rtol: float = 1e-8,
     progress: Progress = False,
     *,
@@ -52,8 +54,8 @@ def field(
     boundary : "open" or "periodic"
         "open": one beam in open space, the limit of vanishing absorption. "periodic": an array of beams, `period`
         apart: the plain sum over real kx, which is what a calculation with periodic sides answers.
-    period : float, m
-        For "periodic"; the length of the x grid (n dx) where it is even and no period is given.
+    period : float, or two of them, m
+        For "periodic"; the length of the x grid (n dx) where it is even and no period is given. With y two of them, along x and y.
     rtol : float
         Requested error of the open field over the largest |p| of each plane, wherever on the plane that lies.
     progress : bool or function
@@ -65,15 +67,16 @@ def field(
         * "v_x", "v_z" [m/s]: particle velocity. v_z is continuous; at an interface v_x, and with it intensity_x, is that of the
           medium behind it.
         * "u_x", "u_z" [m]: displacement, v = -i w u; "s_xz" [Pa]: shear stress, 0 in fluids. In solids p is -s_zz.
-        * "intensity_x", "intensity_z" [W/m^2], both by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
+        * "intensity_x", "intensity_z" [W/m^2], all by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
           In solids, where shear stress has a part in it, it is refused.
+        * with y, "v_y", "u_y", "s_yz" and "intensity_y" as well, and no power_through.
         * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
           through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
           ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
     component : "p", "v_x", "v_z", "u_x", "u_z" or "s_xz", optional
         The one variable of the dataset, instead of `variables`. All are defined in fluids, too, where s_xz is 0.
     y : float or 1-D array, m, optional
-        Makes it a question in three dimensions, in open space, of the pressure: see docs/three-dimensions.md.
+        Makes it a question in three dimensions: see docs/three-dimensions.md.
     azimuth : float, degree, optional
         With y: overrides the beam's, the direction of its tilt from x towards y.
 
@@ -120,21 +123,16 @@ def field(
     """
     validate.flag_or_function(progress, "progress")
     variables = of_component(component, variables)
-    if y is not None:
-        space, labels = question_in_space(slab, beam, frequency, angle, rtol, (x, y, z, azimuth))
-        refuse_options(boundary, period, variables, average)
-        return field_in_space(space, labels, progress)
-    if azimuth is not None:
-        raise validate.refuse("azimuth", "none without y", azimuth)
-    question, labels = checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
-    names = labels.variables
-    memory.check_field(question.shape, values=bytes_held(names))
-    values: dict[str, np.ndarray] = {name: np.empty(question.shape, kind) for name, kind in kinds(names).items()}
-    errors = no_errors(names, question.shape)
+    places, values_of, sides = (x, y, z, azimuth), (variables, average), (boundary, period)
+    question, labels = question_at(places, slab, beam, (frequency, angle), sides, rtol, values_of)
+    names, shape = labels.variables, question.shape
+    memory.check_field((*shape[:3], math.prod(shape[3:])), values=bytes_held(names))
+    values: dict[str, np.ndarray] = {name: np.empty(shape, kind) for name, kind in kinds(names).items()}
+    errors = no_errors(names, shape)
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
         row = averaged_row(question, i, names, average)
         errors.add(i, slice(None), row.fill(slice(None), slice(None), {name: v[i] for name, v in values.items()}))
-    if "power_through" in names:
+    if "power_through" in names and isinstance(question, FieldQuestion):
         values["power_through"] = powers(question, errors)
     for budget, scale in errors.worst_by_scale:
         checks.warn_if_inaccurate(budget, question.rtol, scale)

@@ -1,28 +1,72 @@
-"""`field` with y: the question in three dimensions checked, and its answer labelled."""
+"""What `field` and `save_field` ask, in two dimensions or with y in three: checked."""
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
-import xarray as xr
 
-from .. import memory, validate
-from ..contour.error import ErrorBudget
-from ..fields.in_space import SpaceQuestion, prepare
+from .. import validate
+from ..contour import sums
+from ..fields.in_space import SpaceQuestion
+from ..fields.question import FieldQuestion
 from ..media.fluids import Fluid
 from ..media.planes import warn_of_stripes
 from ..media.structures import Layer, Slab
-from ..progress import Progress, watched
 from ..sources.base import Beam
 from . import checks, hints
-from .field_question import Labels, labelled
+from .field_question import Labels, checked_question
+from .field_variables import IN_SPACE, checked_variables
+
+#: The largest |p| over the beam's at which neighbouring beams of a lattice may meet.
+SEAM = 1e-2
+
+
+def question_at(
+    places: tuple[Any, Any, Any, Any],
+    slab: Slab,
+    beam: Beam,
+    waves: tuple[Any, Any],
+    sides: tuple[str, Any],
+    rtol: float,
+    values: tuple[Any, str | None],
+) -> tuple[FieldQuestion | SpaceQuestion, Labels]:
+    """The question of a field, or a ValueError that names the argument.
+
+    Parameters
+    ----------
+    places : x, y or None, z, and the azimuth or None
+    slab, beam
+    waves : frequency and angle
+    sides : boundary and period
+    rtol
+    values : variables and average
+    """
+    (x, y, z, azimuth), (frequency, angle), (boundary, period), (variables, average) = places, waves, sides, values
+    if y is None:
+        if azimuth is not None:
+            raise validate.refuse("azimuth", "none without y", azimuth)
+        return checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
+    question, labels = question_in_space(slab, beam, frequency, angle, rtol, places)
+    validate.word(boundary, "boundary", "open", "periodic")
+    if boundary == "periodic":
+        period = _lengths(period, question)
+    elif period is not None:
+        raise validate.refuse("period", "none with boundary='open'", period)
+    if average is not None:
+        validate.word(average, "average", "cell")
+    else:
+        warn_of_stripes(slab, question.z, question.frequency)
+    names = checked_variables(variables, slab, question.z, IN_SPACE)
+    labels = labels._replace(boundary=boundary, period=period, variables=names, average=average)
+    return dataclasses.replace(question, period=period), labels
 
 
 def question_in_space(
     slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float, places: tuple[Any, Any, Any, Any]
 ) -> tuple[SpaceQuestion, Labels]:
-    """The question of a field at `places`, x, y, z and the azimuth or None, or a ValueError that names the argument."""
+    """The question of an open field of p at `places`, x, y, z and the azimuth or None, or a ValueError that names the argument."""
     beams = checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     x, y, z = (validate.axis(v, name) for v, name in zip(places, "xyz", strict=False))
     in_space: Any = getattr(beam, "in_space", None)
@@ -34,7 +78,6 @@ def question_in_space(
     refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat
-    warn_of_stripes(slab, np.atleast_1d(z), frequencies, averages=False)
     checks.warn_if_not_ended(
         beam, np.max(checks.k0(slab, frequencies)), min(float(np.min(z)), 0.0) - beam.z0, beams.rtol
     )
@@ -44,24 +87,25 @@ def question_in_space(
     return question, Labels(axes, slab, beam, "open", None, beams.rtol, ("p",), azimuth=azimuth)
 
 
-def refuse_options(boundary: str, period: Any, variables: Any, average: Any) -> None:
-    """Refuse what is not available in three dimensions yet."""
-    validate.word(boundary, "boundary", "open", "periodic")
-    if boundary != "open":
-        raise ValueError(
-            "boundary: expected 'open' where y is given, got 'periodic': not available in three dimensions yet"
-        )
-    if period is not None:
-        raise validate.refuse("period", "none with boundary='open'", period)
-    if average is not None:
-        raise validate.refuse("average", "none where y is given (not available in 3-D yet)", average)
-    names = [variables] if isinstance(variables, str) else variables
-    if not isinstance(names, list | tuple) or list(names) != ["p"]:
-        raise validate.refuse(
-            "variables",
-            "'p' alone where y is given (velocities, intensity and power: not available in 3-D yet)",
-            variables,
-        )
+def _lengths(period: Any, question: SpaceQuestion) -> tuple[float, float]:
+    """The lattice's lengths along x and y; refused where neighbouring beams overlap."""
+    if period is None:
+        grids = [sums.grid_of(v) for v in (question.x, question.y)]
+        if not all(grid.step for grid in grids):
+            raise ValueError(
+                "period: expected two lengths (Lx, Ly) [m] with boundary='periodic' and an uneven x or y, got None"
+            )
+        period = tuple(grid.step * v.size for grid, v in zip(grids, (question.x, question.y), strict=True))
+    if not isinstance(period, tuple | list | np.ndarray) or len(period) != 2:
+        raise validate.refuse("period", "two lengths (Lx, Ly) [m] where y is given", period)
+    lengths = tuple(validate.as_number(v, "period", positive=True) for v in period)
+    for axis, length, half in zip("xy", lengths, question.source.half_widths(SEAM), strict=True):
+        if half > length / 2:
+            raise ValueError(
+                f"period: expected a grid wide enough for the beam, got {length:.6g} m along {axis}, at whose ends the launched |p| is "
+                f"still above {SEAM:.2g} of its largest"
+            )
+    return lengths[0], lengths[1]
 
 
 def refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
@@ -74,18 +118,3 @@ def refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
             raise ValueError(
                 f"density_x: expected none, or density itself, where y is given, got {fluid!r}: a density along x says nothing of that along y"
             )
-
-
-def field_in_space(question: SpaceQuestion, labels: Labels, progress: Progress) -> xr.Dataset:
-    """The answer of a question in three dimensions, as a dataset; warns where its estimated error is above rtol."""
-    frequencies, angles, planes, rows, points = question.shape
-    memory.check_field((frequencies, angles, planes, rows * points))
-    p, errors = np.empty(question.shape, complex), np.empty(question.shape[:2])
-    worst: ErrorBudget | None = None
-    for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
-        budget = prepare(question, i).fill(slice(None), slice(None), p[i])
-        errors[i] = budget.total
-        worst = budget.worst if worst is None else worst.worse(budget)
-    assert worst is not None
-    checks.warn_if_inaccurate(worst, question.rtol)
-    return labelled(labels, {"p": errors}, {"p": p})

@@ -25,7 +25,7 @@ class Labels(NamedTuple):
     slab: Slab
     beam: Beam
     boundary: str
-    period: float | None
+    period: float | tuple[float, float] | None
     rtol: float
     variables: tuple[str, ...]
     average: str | None = None

@@ -9,7 +9,8 @@ import numpy as np
 
 from .. import validate
 from ..contour.error import ErrorBudget, uniform_budget
-from ..fields.question import FieldQuestion, Prepared, fill, prepare
+from ..fields.in_space import PreparedInSpace, SpaceQuestion
+from ..fields.question import FieldQuestion, Prepared
 from ..media.solid_runs import has_solids, in_solid
 from ..media.structures import Slab
 from ..profiles.plane_power import power_through_planes
@@ -17,13 +18,17 @@ from ..profiles.power import PowerError
 from ..response.sampled_slab import sample
 from ..sources.angles import AngleInterpolation
 
-#: What can be asked for, in the order of a dataset; "intensity" stands for both of its components.
+#: What can be asked for, in the order of a dataset; "intensity" stands for all of its components.
 VARIABLES = ("p", "v_x", "v_z", "u_x", "u_z", "s_xz", "intensity_x", "intensity_z", "power_through")
-INTENSITY = {"intensity_x": "v_x", "intensity_z": "v_z"}
+IN_SPACE = (
+    *("p", "v_x", "v_y", "v_z", "u_x", "u_y", "u_z", "s_xz", "s_yz"),
+    *("intensity_x", "intensity_y", "intensity_z"),
+)
+INTENSITY = {f"intensity_{axis}": f"v_{axis}" for axis in "xyz"}
 #: Displacements are made of velocities: v = -i w u.
-DISPLACEMENT = {"u_x": "v_x", "u_z": "v_z"}
-#: What is summed over plane waves.
-SUMMED = ("p", "v_x", "v_z", "s_xz")
+DISPLACEMENT = {f"u_{axis}": f"v_{axis}" for axis in "xyz"}
+#: What is summed over plane waves, and what of it is 0 in fluids.
+SUMMED, SHEAR = ("p", "v_x", "v_y", "v_z", "s_xz", "s_yz"), ("s_xz", "s_yz")
 #: What an error is relative to.
 SCALES = (
     {name: f"the largest |{name}|" for name in (*SUMMED, *DISPLACEMENT)}
@@ -32,16 +37,16 @@ SCALES = (
 )
 
 
-def checked_variables(variables: Any, slab: Slab, z: np.ndarray) -> tuple[str, ...]:
-    """The names of the variables, each once and in the order of `VARIABLES`, or a ValueError."""
+def checked_variables(variables: Any, slab: Slab, z: np.ndarray, known: tuple[str, ...] = VARIABLES) -> tuple[str, ...]:
+    """The names of the variables, each once and in the order of those `known`, or a ValueError."""
     names = [variables] if isinstance(variables, str) else variables
-    expected = f"some of {', '.join((*VARIABLES, 'intensity'))}"
+    expected = f"some of {', '.join((*known, 'intensity'))}"
     if not isinstance(names, list | tuple) or not names:
         raise validate.refuse("variables", expected, variables)
     for name in names:
-        if not isinstance(name, str) or name not in (*VARIABLES, "intensity"):
+        if not isinstance(name, str) or name not in (*known, "intensity"):
             raise validate.refuse("variables", expected, name)
-    chosen = tuple(v for v in VARIABLES if v in names or (v in INTENSITY and "intensity" in names))
+    chosen = tuple(v for v in known if v in names or (v in INTENSITY and "intensity" in names))
     if set(INTENSITY) & set(chosen) and (solid := in_solid(slab, z)).any():
         raise ValueError(
             f"variables: expected an intensity at z in fluids (p v lacks the part of the shear stress), got z = {z[solid][0]:g} "
@@ -64,22 +69,22 @@ class Row(NamedTuple):
     """A question at one frequency: what is to be filled, and the contour of each quantity that is summed for it."""
 
     variables: tuple[str, ...]  #: those on (z, x)
-    prepared: dict[str, Prepared]
+    prepared: dict[str, Prepared | PreparedInSpace]
     omega: float
 
     def fill(self, planes: slice, angles: slice, out: dict[str, np.ndarray]) -> dict[str, ErrorBudget]:
-        """Every variable at planes and angles into out[variable] (A, Z, X); the terms of their errors, (A,) each."""
+        """Every variable at planes and angles into out[variable] (A, Z, X) or (A, Z, Y, X); the terms of their errors, (A,) each."""
         if not self.variables:
             return {}
         shape = out[self.variables[0]].shape
         sums = {q: out[q] if q in out else np.empty(shape, complex) for q in self.prepared}
-        budgets = {q: fill(prepared, planes, angles, sums[q]) for q, prepared in self.prepared.items()}
+        budgets = {q: prepared.fill(planes, angles, sums[q]) for q, prepared in self.prepared.items()}
         for name in set(self.variables) & set(DISPLACEMENT):
             np.multiply(sums[DISPLACEMENT[name]], 1j / self.omega, out=out[name])
             budgets[name] = budgets[DISPLACEMENT[name]]
-        if "s_xz" in self.variables and "s_xz" not in self.prepared:  # fluids alone
-            out["s_xz"][:] = 0
-            budgets["s_xz"] = uniform_budget(shape[0], 0.0)
+        for name in set(self.variables) & set(SHEAR) - set(self.prepared):  # fluids alone
+            out[name][:] = 0
+            budgets[name] = uniform_budget(shape[0], 0.0)
         for name in set(self.variables) & set(INTENSITY):
             p, v = sums["p"], sums[INTENSITY[name]]
             for at in range(shape[0]):  # (1/2) Re p v*, angle by angle, which takes less memory
@@ -96,15 +101,15 @@ def _summed_for(variable: str) -> tuple[str, ...]:
     return ("p", INTENSITY[variable]) if variable in INTENSITY else (DISPLACEMENT.get(variable, variable),)
 
 
-def row_of(question: FieldQuestion, i: int, variables: tuple[str, ...]) -> Row:
+def row_of(question: FieldQuestion | SpaceQuestion, i: int, variables: tuple[str, ...]) -> Row:
     """The contours at frequency i; both factors of an intensity keep half its rtol."""
     on_map = tuple(v for v in variables if v != "power_through")
     wanted = {q for v in on_map for q in _summed_for(v)}
     if set(INTENSITY) & set(on_map):
         question = dataclasses.replace(question, rtol=max(question.rtol / 2, 1e-12))
-    if "s_xz" in wanted and not has_solids(question.slab):
-        wanted.remove("s_xz")
-    prepared = {q: prepare(question, i, q) for q in SUMMED if q in wanted}
+    if wanted & set(SHEAR) and not has_solids(question.slab):
+        wanted -= set(SHEAR)
+    prepared = {q: question.prepared(i, q) for q in SUMMED if q in wanted}
     return Row(on_map, prepared, 2 * np.pi * float(question.frequency[i]))
 
 

@@ -18,7 +18,7 @@ import xarray as xr
 from .. import validate
 from ..io import datasets
 from ..io.labels import COMPARISON, COORDINATES, label
-from .grid import PLACES, matched, on_common_grid, pressure_of
+from .grid import PLACES, as_rows, matched, on_common_grid, places_of, pressure_of
 from .nodes import on_nodes, scattered
 from .norms import best_scale, cell_areas, errors, scaled_misfit, weights
 from .period import wraparound
@@ -37,7 +37,7 @@ def compare(
     Parameters
     ----------
     a, b : Dataset
-        With the pressure `p` on (z, x), from `beamprop.field`, `fem.field` or `read_comsol`; further dims such as
+        With the pressure `p` on (z, x), or with y on (y, x), (z, y) or (z, y, x), from `beamprop.field`, `fem.field` or `read_comsol`; further dims such as
         frequency and angle must be the same in both. Either may be on scattered nodes, the other being from `field`.
     rescale : bool
         Multiply b by the best complex scale factor first, for fields that were launched with different amplitudes.
@@ -53,7 +53,8 @@ def compare(
         `fwhm_difference` (NaN where the half level is not reached), `peak_a`, `peak_b` and `peak_difference`. The
         fields `p_a`, `p_b` and `error` = |a - b| on a's points in the region that both cover, in a's unit. The
         attribute `conjugate_fits_better` is 1 where conj(b) is much nearer to a than b; `compared_on` says which points
-        those are, and what was interpolated. On nodes there are no quantities by z.
+        those are, and what was interpolated. On nodes there are no quantities by z. With y, norms are over planes and volumes,
+        places have `largest_error_y`, and widths, along x and along y through the largest \\|p\\| of each plane, an `axis`.
 
     Raises
     ------
@@ -97,16 +98,18 @@ def _compared_on_grid(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_referenc
     p_b = matched(pressure_of(b, "b"), p_a, unit, "b")
     z_b = p_b["z"].values
     p_a, p_b, shares = on_common_grid(p_a, p_b, "b")
-    between = np.hypot(shares["z"], shares["x"])
-    w = weights(p_a.values, p_b.values, cell_areas(p_a))
-    out, filled_a, filled_b = _scaled(p_a.values, p_b.values, w, rescale)
+    between = float(np.linalg.norm(list(shares.values())))
+    rows_a, rows_b = as_rows(p_a.values, p_a), as_rows(p_b.values, p_a)
+    w = weights(rows_a, rows_b, cell_areas(p_a))
+    out, filled_a, filled_b = _scaled(rows_a, rows_b, w, rescale)
     conjugate = warn_of_conjugate(filled_a, filled_b, w)
     if open_reference is not None:
         out["wraparound"] = wraparound(a, b, open_reference)
     warn_of_boundaries(a, b, out.get("wraparound"))
     if rescale:
-        p_b = p_b * out["scale"][..., None, None]
-    out |= errors(filled_a, filled_b, w, p_a.x.values, p_a.z.values) | widths_and_peaks(p_a, p_b)
+        p_b = p_b * np.expand_dims(out["scale"], tuple(range(-len(places_of(p_a)), 0)))
+    across = {d: p_a[d].values for d in places_of(p_a) if d != "z"}
+    out |= errors(filled_a, filled_b, w, across, p_a.z.values) | widths_and_peaks(p_a, p_b)
     if not (shares["z"] and warn_of_layers(a, b, z_b, p_a["z"].values)):
         warn_of_interpolation(between, out["relative_l2"])
     out |= {"interpolation_error": between} | _fields_of(p_a, p_b)
@@ -126,7 +129,7 @@ def _compared_on_nodes(a: xr.Dataset, b: xr.Dataset, rescale: bool, open_referen
     warn_of_boundaries(a, b, None)
     if rescale:
         p_b = p_b * out["scale"][..., None]
-    out |= errors(filled_a, filled_b, w, np.arange(areas.size), np.zeros(1)) | {"interpolation_error": 0.0}
+    out |= errors(filled_a, filled_b, w, {"x": np.arange(areas.size)}, np.zeros(1)) | {"interpolation_error": 0.0}
     worst = out["largest_error_x"]
     out |= {f"largest_error_{n}": p_a[n].values[worst] for n in ("x", "z")} | _fields_of(p_a, p_b)
     del out["relative_l2_by_z"]
@@ -154,6 +157,9 @@ def _dataset(
     dims = tuple(map(str, p.dims))
     lead = tuple(d for d in dims if d not in PLACES)
     own = {**dict.fromkeys(_FIELDS, dims), **dict.fromkeys(_BY_Z, (*lead, "z")), "interpolation_error": ()}
+    if "y" in dims:
+        own |= dict.fromkeys([n for n in _BY_Z if n.startswith("fwhm")], (*lead, "z", "axis"))
+        known["axis"] = (("axis",), np.array(["x", "y"]))
     arrays = {n: (own.get(n, lead), v) for n, v in variables.items()}
     ds = datasets.make(
         arrays,
@@ -170,6 +176,6 @@ def _dataset(
     for name, variable in ds.data_vars.items():
         if COMPARISON[str(name)][0] == "Pa":
             variable.attrs["units"] = p.attrs.get("units") or "1"
-    for name in ("z", "x"):
+    for name in (n for n in PLACES if n in ds.coords and n in p.coords and n != "node"):
         ds[name].attrs = label(name) | p[name].attrs
     return ds.assign_attrs(attrs, rescaled=int(rescale))

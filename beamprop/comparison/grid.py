@@ -13,13 +13,13 @@ from .resample import resample
 #: Positions that differ by less than this share of the span are the same: files print ten digits and more of them.
 SAME_POSITION = 1e-9
 #: Dims that are places.
-PLACES = ("z", "x", "node")
+PLACES = ("z", "y", "x", "node")
 #: Frequencies and angles of files are rounded to five digits.
 ROUNDED = 1e-4
 
 
 def pressure_of(ds: Any, name: str) -> xr.DataArray:
-    """The pressure on (…, z, x), both rising; dims of one entry become scalar coordinates, z and x never."""
+    """The pressure on (…, z, x) or (…, z, y, x), all rising; dims of one entry become scalar coordinates, z and x never."""
     if not isinstance(ds, xr.Dataset) or "p" not in ds:
         got = ", ".join(map(str, ds.data_vars)) if isinstance(ds, xr.Dataset) else type(ds).__name__
         raise ValueError(f"{name}: expected a dataset with the pressure p, got {got}")
@@ -29,7 +29,8 @@ def pressure_of(ds: Any, name: str) -> xr.DataArray:
             f"{name}: expected p on (z, x), got p on scattered nodes: bring it onto a grid with to_grid "
             "(the command's --grid)"
         )
-    for axis in ("z", "x"):
+    across = ("y",) if p.sizes.get("y", 1) > 1 else ()
+    for axis in ("z", *across, "x"):
         if axis not in p.coords:
             raise ValueError(f"{name}: expected p on (z, x), got no {axis} among {', '.join(map(str, p.coords))}")
         if axis not in p.dims:
@@ -38,7 +39,17 @@ def pressure_of(ds: Any, name: str) -> xr.DataArray:
             raise ValueError(f"{name}: expected finite and distinct positions {axis}, got others")
         p = p.sortby(axis)
     p = p.squeeze([d for d in p.dims if d not in ("z", "x") and p.sizes[d] == 1])
-    return p.transpose(..., "z", "x")
+    return p.transpose(..., "z", *across, "x")
+
+
+def places_of(p: xr.DataArray) -> tuple[str, ...]:
+    """The axes of a grid: z, y in three dimensions, and x."""
+    return tuple(d for d in PLACES if d in p.dims)
+
+
+def as_rows(values: np.ndarray, p: xr.DataArray) -> np.ndarray:
+    """Values on the grid of p with each plane as a row: (…, z, points)."""
+    return values.reshape(*p.shape[: p.dims.index("z") + 1], -1)
 
 
 def matched(p: xr.DataArray, to: xr.DataArray, unit: str | None, name: str) -> xr.DataArray:
@@ -49,13 +60,14 @@ def matched(p: xr.DataArray, to: xr.DataArray, unit: str | None, name: str) -> x
             raise ValueError(f"{name}: expected p in {unit!r} as a has it, or in a unit of pressure, got {own_unit!r}")
         p = p * (PRESSURE_UNITS[plain_unit(str(own_unit))] / PRESSURE_UNITS[plain_unit(str(unit))])
     lead = [d for d in to.dims if d not in PLACES]
-    for dim in {*lead, *p.dims} - set(PLACES):
-        if (dim in lead) != (dim in p.dims):
+    for dim in {*to.dims, *p.dims} - {"z", "x", "node"}:
+        if (dim in to.dims) != (dim in p.dims):
             raise ValueError(f"{name}: expected the dims {to.dims} as a has them, got {p.dims}: select one {dim}")
     for key in {*lead, "frequency", "angle"} & set(p.coords) & set(to.coords):
         _check_same(p, to, key, name)
         if key in lead:
             p = p.assign_coords({key: to[key]})
+    _check_same_y(p, to, name)
     drop = [c for c in p.coords if c not in to.coords]
     return p.drop_vars(drop).transpose(*lead, *(d for d in PLACES if d in p.dims))
 
@@ -67,6 +79,14 @@ def _check_same(p: xr.DataArray, to: xr.DataArray, key: Any, name: str) -> None:
         raise ValueError(f"{name}: expected the same {key} as a, {_short(ours)}, got {_short(theirs)}")
 
 
+def _check_same_y(p: xr.DataArray, to: xr.DataArray, name: str) -> None:
+    """Refuse cuts at different y; a field on which nothing depends on y has none."""
+    if all("y" in q.coords and q["y"].ndim == 0 for q in (p, to)):
+        ours, theirs = float(to["y"]), float(p["y"])
+        if not abs(ours - theirs) <= SAME_POSITION * max(np.ptp(to["x"].values), abs(ours), abs(theirs)):
+            raise ValueError(f"{name}: expected the same y as a, {ours:.9g}, got {theirs:.9g}")
+
+
 def _short(values: np.ndarray) -> str:
     return np.array2string(values, threshold=6, edgeitems=2, precision=6)
 
@@ -74,7 +94,7 @@ def _short(values: np.ndarray) -> str:
 def on_common_grid(to: xr.DataArray, p: xr.DataArray, name: str) -> tuple[xr.DataArray, xr.DataArray, dict[str, float]]:
     """Both on those of `to`'s points that p's grid covers, and each axis' estimated relative error of interpolation."""
     shares = {}
-    for axis in ("z", "x"):
+    for axis in places_of(to):
         new, old = to[axis].values, p[axis].values
         near = SAME_POSITION * max(np.ptp(new), np.ptp(old), 1e-6 * np.abs(new).max())
         inside = (new >= old[0] - near) & (new <= old[-1] + near)

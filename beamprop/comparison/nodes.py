@@ -39,6 +39,10 @@ def on_nodes(a: xr.Dataset, b: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray, 
         raise ValueError(f"a, b: expected a grid at least on one side, got scattered nodes in both: {HOW}")
     name, other = ("a", "b") if scattered(a) else ("b", "a")
     mesh, ours = (a, b) if scattered(a) else (b, a)
+    if ours.attrs.get("geometry") == "3-D":
+        raise ValueError(
+            f"{other}: expected a field without y beside scattered nodes, got one in three dimensions: {HOW}"
+        )
     on_mesh, grid = _pressure_on_nodes(mesh, name), pressure_of(ours, other)
     areas, weighed = _areas(on_mesh, mesh)
     record = _record(ours, name)

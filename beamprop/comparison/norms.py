@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import functools
 import warnings
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from .grid import places_of
+
 
 def cell_areas(p: xr.DataArray) -> np.ndarray:
-    """Area of the cell of each point of a grid (Z, X): equal on an even one."""
-    dz, dx = (np.gradient(p[d].values) if p.sizes[d] > 1 else np.ones(1) for d in ("z", "x"))
-    return np.outer(dz, dx)
+    """Area, or volume, of the cell of each point of a grid (Z, X) or (Z, Y, X), each plane as a row: equal on an even one."""
+    steps = [np.gradient(p[d].values) if p.sizes[d] > 1 else np.ones(1) for d in places_of(p)]
+    return functools.reduce(np.outer, steps).reshape(steps[0].size, -1)
 
 
 def weights(a: np.ndarray, b: np.ndarray, areas: np.ndarray) -> np.ndarray:
@@ -62,15 +65,15 @@ def scaled_misfit(a: np.ndarray, b: np.ndarray, w: np.ndarray) -> np.ndarray:
     return relative_l2(a, best_scale(a, b, w)[..., None, None] * b, w)
 
 
-def errors(a: np.ndarray, b: np.ndarray, w: np.ndarray, x: np.ndarray, z: np.ndarray) -> dict[str, Any]:
-    """Relative L2 errors of whole fields and by z, and the largest error and its place."""
+def errors(a: np.ndarray, b: np.ndarray, w: np.ndarray, across: dict[str, np.ndarray], z: np.ndarray) -> dict[str, Any]:
+    """Relative L2 errors of whole fields and by z, and the largest error and its place: z, and the axes of the points of a row."""
     off = np.where(w > 0, np.abs(a - b), -1.0)
     flat = off.reshape(*off.shape[:-2], -1)
     row, column = np.unravel_index(flat.argmax(-1), off.shape[-2:])
+    places = np.unravel_index(column, tuple(at.size for at in across.values()))
     return {
         "relative_l2": relative_l2(a, b, w),
         "relative_l2_by_z": relative_l2(a, b, w, (-1,)),
         "largest_error": _divide(flat.max(-1), np.abs(a).max((-2, -1))),
-        "largest_error_x": x[column],
         "largest_error_z": z[row],
-    }
+    } | {f"largest_error_{name}": at[i] for (name, at), i in zip(across.items(), places, strict=True)}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from .grid import matched, on_common_grid, pressure_of
+from .grid import as_rows, matched, on_common_grid, pressure_of
 from .norms import cell_areas, relative_l2, weights
 from .warn import boundary_of
 
@@ -21,5 +21,6 @@ def wraparound(a: xr.Dataset, b: xr.Dataset, reference: xr.Dataset) -> np.ndarra
     chosen = kinds.index("periodic") if "periodic" in kinds else kinds.index(None)
     p = pressure_of((a, b)[chosen], "ab"[chosen])
     p, p_open, _ = on_common_grid(p, matched(p_open, p, p.attrs.get("units"), "open_reference"), "open_reference")
-    w = weights(p.values, p_open.values, cell_areas(p))
-    return relative_l2(np.where(w > 0, p.values, 0), np.where(w > 0, p_open.values, 0), w)
+    ours, in_space = as_rows(p.values, p), as_rows(p_open.values, p)
+    w = weights(ours, in_space, cell_areas(p))
+    return relative_l2(np.where(w > 0, ours, 0), np.where(w > 0, in_space, 0), w)

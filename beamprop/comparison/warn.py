@@ -68,10 +68,19 @@ def warn_of_layers(a: xr.Dataset, b: xr.Dataset, old: np.ndarray, new: np.ndarra
     return False
 
 
-def boundary_of(ds: xr.Dataset) -> tuple[str | None, float | None]:
-    """Boundary and period [m] that a dataset states; a field in open space has no period."""
+def boundary_of(ds: xr.Dataset) -> tuple[str | None, np.ndarray | None]:
+    """Boundary and periods [m] that a dataset states, along x or along x and y; a field in open space has no period."""
     boundary, period = ds.attrs.get("boundary"), ds.attrs.get("period")
-    return boundary, None if period is None or boundary == "open" else float(period)
+    return boundary, None if period is None or boundary == "open" else np.atleast_1d(np.asarray(period, float))
+
+
+def _said(period: np.ndarray, digits: int = 6) -> str:
+    """Periods in words."""
+    return " x ".join(f"{length:.{digits}g}" for length in period)
+
+
+def _same(period: np.ndarray, second: np.ndarray) -> bool:
+    return period.size == second.size and bool(np.all(np.abs(period - second) <= SAME_POSITION * period))
 
 
 def warn_of_boundaries(a: xr.Dataset, b: xr.Dataset, wraparound: np.ndarray | None) -> None:
@@ -79,9 +88,9 @@ def warn_of_boundaries(a: xr.Dataset, b: xr.Dataset, wraparound: np.ndarray | No
     (kind_a, period_a), (kind_b, period_b) = boundary_of(a), boundary_of(b)
     if {kind_a, kind_b} == {"open", "periodic"}:
         which, period = ("a", period_a) if kind_a == "periodic" else ("b", period_b)
-        text = f"{which} is periodic{'' if period is None else f' ({period:g} m)'} and the other in open space"
-    elif period_a is not None and period_b is not None and abs(period_a - period_b) > SAME_POSITION * period_a:
-        text = f"a has the period {period_a:.9g} m, b {period_b:.9g} m"
+        text = f"{which} is periodic{'' if period is None else f' ({_said(period)} m)'} and the other in open space"
+    elif period_a is not None and period_b is not None and not _same(period_a, period_b):
+        text = f"a has the period {_said(period_a, 9)} m, b {_said(period_b, 9)} m"
     else:
         return
     share = "" if wraparound is None else f", estimated at {np.nanmax(wraparound):.2g} (wraparound)"

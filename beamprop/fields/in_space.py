@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contour.error import ErrorBudget
+from ..contour.error import ErrorBudget, uniform_budget
 from ..contour.quadrature import Quadrature
 from ..contour.space import lattice
 from ..contour.space.choose import choose_in_space
@@ -17,8 +17,10 @@ from ..response.sampled_slab import sample
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import AngleInterpolation, interpolate_angles
 from ..sources.in_space import SpaceBeam
+from ..sources.lateral import SpaceGradient
 from ..sources.piston import driven_by_velocity
 from . import evaluate
+from .periodic_in_space import PeriodicWaves, periodic_waves
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,11 +35,16 @@ class SpaceQuestion:
     y: np.ndarray  #: (Y,) m from the source's middle
     x: np.ndarray  #: (X,) m from the source's middle
     rtol: float
+    period: tuple[float, float] | None = None  #: along x and y, of a periodic array of beams [m]; None in open space
 
     @property
     def shape(self) -> tuple[int, int, int, int, int]:
         """F, A, Z, Y, X."""
         return self.frequency.size, self.angle.size, self.z.size, self.y.size, self.x.size
+
+    def prepared(self, i: int, quantity: str = "p") -> PreparedInSpace:
+        """The contour for frequency i of "p", a velocity or a shear stress: see `prepare`."""
+        return prepare(self, i, quantity)
 
 
 class SpaceWaves(NamedTuple):
@@ -91,11 +98,23 @@ class SpaceWaves(NamedTuple):
 ROW_OVER_PLANE = 5
 
 
-def prepare(question: SpaceQuestion, i: int) -> PreparedInSpace:
-    """Choose the contour for frequency i."""
+#: Quantities along x and y: whether it is y, and the one of a plane wave along x whose value over kx theirs over kx or ky is.
+LATERAL = {"v_x": (False, "v_x"), "v_y": (True, "v_x"), "s_xz": (False, "s_xz"), "s_yz": (True, "s_xz")}
+
+
+def prepare(question: SpaceQuestion, i: int, quantity: str = "p") -> PreparedInSpace:
+    """Choose the contour for frequency i, of "p", "v_x", "v_y", "v_z", "s_xz" or "s_yz": each has its own.
+
+    Waves along k have their velocity in the plane of k and z, so that v_x and v_y are kx and ky times the same function of |k|.
+    """
     s = sample(question.slab, float(question.frequency[i]), backward=True)
-    beams = interpolate_angles(question.source, question.angle, s.k0, question.rtol * 1e-4)
-    transfer = driven_by(question.source, transfer_function.through(s, question.source.z0))
+    along_y, of_radius = LATERAL.get(quantity, (False, quantity))
+    source: Any = SpaceGradient(question.source, along_y) if quantity in LATERAL else question.source
+    beams = interpolate_angles(source, question.angle, s.k0, question.rtol * 1e-4)
+    transfer = driven_by(question.source, transfer_function.through(s, question.source.z0, of_radius))
+    if question.period is not None:
+        places = question.x, question.y, question.z
+        return PreparedInSpace(question, periodic_waves(s, beams, transfer, places, question.period), transfer)
     quadrature = choose_in_space(s, beams, transfer, (question.x, question.y), question.z, question.rtol)
     return PreparedInSpace(question, SpaceWaves(s.k0, beams, quadrature, question.y, question.x), transfer)
 
@@ -112,12 +131,19 @@ class PreparedInSpace(NamedTuple):
     """A question at one frequency, and the contour that answers it."""
 
     question: SpaceQuestion
-    waves: SpaceWaves
+    waves: SpaceWaves | PeriodicWaves
     transfer: TransferFunction
 
     def fill(self, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
-        """p at planes and angles into out (A, Z, Y, X), whose (Z, Y, X) is contiguous; the terms of its estimated error, (A,)."""
+        """p or another quantity at planes and angles into out (A, Z, Y, X) or (A, Z, Y X), of which all but A is contiguous.
+
+        Returns
+        -------
+        Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
+        """
         waves = self.waves._replace(sources=self.waves.sources.taken(angles))
         flat = out.reshape(*out.shape[:2], -1)
         low_rank = evaluate.fill_map(waves, self.transfer, self.question.z[planes], flat, self.question.rtol)
+        if self.question.period is not None:
+            return uniform_budget(out.shape[0], np.nan)
         return self.waves.quadrature.budget.taken(angles)._replace(low_rank=low_rank)

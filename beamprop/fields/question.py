@@ -39,6 +39,10 @@ class FieldQuestion:
         """F, A, Z, X."""
         return self.frequency.size, self.angle.size, self.z.size, self.x.size
 
+    def prepared(self, i: int, quantity: str = "p") -> Prepared:
+        """The contour for frequency i of "p", a velocity or a shear stress: see `prepare`."""
+        return prepare(self, i, quantity)
+
 
 class Prepared(NamedTuple):
     """A question at one frequency, and the contour that answers it."""
@@ -48,6 +52,21 @@ class Prepared(NamedTuple):
     beams: AngleInterpolation
     transfer: TransferFunction
     quadrature: Quadrature
+
+    def fill(self, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
+        """p or a velocity at planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
+
+        Returns
+        -------
+        Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
+        """
+        question, s, beams, transfer, quadrature = self
+        waves = evaluate.Superposition(s.k0, beams.taken(angles), quadrature, question.x)
+        if question.period is not None:
+            fill_by_reach(waves, transfer, question.z[planes], out, question.rtol)
+            return uniform_budget(out.shape[0], np.nan)
+        low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
+        return quadrature.budget.taken(angles)._replace(low_rank=low_rank)
 
 
 def prepare(question: FieldQuestion, i: int, quantity: str = "p") -> Prepared:
@@ -64,19 +83,3 @@ def prepare(question: FieldQuestion, i: int, quantity: str = "p") -> Prepared:
     else:
         quadrature = choose.choose_contour(s, beams, transfer, question.x, question.z, question.rtol)
     return Prepared(question, s, beams, transfer, quadrature)
-
-
-def fill(prepared: Prepared, planes: slice, angles: slice, out: np.ndarray) -> ErrorBudget:
-    """p or a velocity at planes and angles into out (A, Z, X), whose (Z, X) is contiguous.
-
-    Returns
-    -------
-    Terms (A,) of the estimated error of an open field over the largest |p| of a plane; nan with a period.
-    """
-    question, s, beams, transfer, quadrature = prepared
-    waves = evaluate.Superposition(s.k0, beams.taken(angles), quadrature, question.x)
-    if question.period is not None:
-        fill_by_reach(waves, transfer, question.z[planes], out, question.rtol)
-        return uniform_budget(out.shape[0], np.nan)
-    low_rank = evaluate.fill_map(waves, transfer, question.z[planes], out, question.rtol)
-    return quadrature.budget.taken(angles)._replace(low_rank=low_rank)

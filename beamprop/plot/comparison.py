@@ -24,6 +24,8 @@ HEIGHTS, STACKED = (25.0, 90.0), (20.0, 34.0)
 def comparison(cmp_ds: xr.Dataset, axes: Any = None, *, ax: Any = None, width: float = style.PAGE) -> Any:
     """Draw a comparison: |a|, |b| and |a - b| as maps, and by depth the relative L2 error and the widths' difference.
 
+    A plane at one z is the three maps alone; of a volume the maps are those at the y of its largest |a|.
+
     Parameters
     ----------
     cmp_ds : Dataset
@@ -48,14 +50,21 @@ def comparison(cmp_ds: xr.Dataset, axes: Any = None, *, ax: Any = None, width: f
     """
     ds = _checked(cmp_ds)
     fields = [n for n in ("p_a", "p_b", "error") if n in ds]
-    with_maps = len(fields) == 3 and ds.sizes["z"] > 1 and ds.sizes["x"] > 1
+    upright, level = _axes_of(ds)
+    with_maps = len(fields) == 3 and ds.sizes[level] > 1 and ds.sizes[upright] > 1
+    alone = with_maps and level != "z"
     given = ax if axes is None else axes
-    places = np.atleast_1d(np.asarray(_figure(ds, with_maps, width) if given is None else given, dtype=object)).ravel()
-    if places.size not in (1, 2, 5) or (places.size == 5 and not with_maps):
-        raise ValueError(f"axes: expected 1, 2 or (for a dataset with fields) 5 Axes, got {places.size}")
+    places = np.atleast_1d(
+        np.asarray(_figure(ds, with_maps, width, alone) if given is None else given, dtype=object)
+    ).ravel()
+    if places.size not in ((3,) if alone else (1, 2, 5)) or (places.size == 5 and not with_maps):
+        counts = "3" if alone else "1, 2 or (for a dataset with fields) 5"
+        raise ValueError(f"axes: expected {counts} Axes, got {places.size}")
     with style.styled(places[0].get_figure(root=True)):
-        if places.size == 5:
+        if places.size >= 3:
             _maps(ds, list(places[:3]))
+        if alone:
+            return places
         _errors(ds, places[0] if places.size == 1 else places[-2])
         if places.size > 1:
             _widths(ds, places[-1])
@@ -67,45 +76,60 @@ def _checked(ds: Any) -> xr.Dataset:
         got = ", ".join(map(str, ds.data_vars)) if isinstance(ds, xr.Dataset) else type(ds).__name__
         raise ValueError(f"cmp_ds: expected a dataset from compare, got {got}")
     ds = ds.squeeze([d for d in ds.dims if d not in ("z", "x") and ds.sizes[d] == 1])
+    if "p_a" in ds and ds.p_a.ndim == 3 and ds.sizes["z"] > 1 and {"x", "y"} <= set(ds.p_a.dims):
+        held = "y" if ds.sizes["x"] > 1 else "x"
+        peak = abs(ds.p_a).fillna(0).argmax([held, "z", *({"x", "y"} - {held})])
+        ds = ds.isel({held: peak[held]})
     extra = [str(d) for d in ds.relative_l2_by_z.dims if d != "z"]
     if extra:
         raise ValueError(f"cmp_ds: expected one field, got several along {', '.join(extra)}: select one with isel")
     return ds
 
 
-def _figure(ds: xr.Dataset, with_maps: bool, width: float) -> Sequence[Any]:
-    """Axes of a new figure: maps above, curves below."""
-    below = 1 if width >= BROAD else 2
-    beside = 3 if with_maps and (width >= BROAD or _proportion(ds) >= STEEP) else 1
+def _axes_of(ds: xr.Dataset) -> tuple[str, str]:
+    """The upright and the level axis of its maps."""
+    dims = set(map(str, ds.p_a.dims)) if "p_a" in ds else {"x", "z"}
+    if "y" in dims and ("z" not in dims or ds.sizes["z"] == 1):
+        return "y", "x"
+    return ("y" if "x" not in dims else "x"), "z"
+
+
+def _figure(ds: xr.Dataset, with_maps: bool, width: float, alone: bool = False) -> Sequence[Any]:
+    """Axes of a new figure: maps above, curves below, or maps alone."""
+    below = 0 if alone else 1 if width >= BROAD else 2
+    beside = 3 if with_maps and (width >= BROAD or (_proportion(ds) >= STEEP and not alone)) else 1
     rows = [CURVES] * below
     if with_maps:
         each = (width - 12.0) / beside - BESIDE
         rows = [ABOVE + float(np.clip(_proportion(ds) * each, *(STACKED if beside == 1 else HEIGHTS)))] * (
             3 // beside
         ) + rows
-    figure = style.new_figure(width, sum(rows))
+    figure = style.new_figure(width, sum(rows) + 8.0 * alone)  # of maps alone the outermost labels have no curves' room
     with style.styled(figure):
         grid = figure.add_gridspec(len(rows), 6, height_ratios=rows)
         wide, half = 6 // beside, 3 * below
         places = [grid[k // beside, wide * (k % beside) : wide * (k % beside) + wide] for k in range(3 * with_maps)]
         places += [
             grid[len(rows) - below + k * (below - 1), half * k * (2 - below) : half * k * (2 - below) + half]
-            for k in range(2)
+            for k in range(2 * (below > 0))
         ]
         return [figure.add_subplot(place) for place in places]
 
 
 def _proportion(ds: xr.Dataset) -> float:
     """Height over width of a map in true proportion."""
-    return float(np.ptp(ds.x.values) / np.ptp(ds.z.values))
+    upright, level = _axes_of(ds)
+    return float(np.ptp(ds[upright].values) / np.ptp(ds[level].values))
 
 
 def _maps(ds: xr.Dataset, axes: Sequence[Any]) -> None:
     """|a| and |b| on one scale, |a - b| on its own; in true proportion unless that makes stripes of them."""
-    first = drawn((ds.p_a.transpose("x", "z"),), "abs")
+    if _axes_of(ds)[1] != "z":
+        ds = ds.squeeze("z")
+    first = drawn((ds.p_a.transpose(*_axes_of(ds)),), "abs")
     aspect = "equal" if 0.4 < _proportion(ds) < 2.5 else "auto"
     for ax, name, title in zip(axes, ("p_a", "p_b", "error"), ("|a|", "|b|", "|a − b|"), strict=True):
-        p = ds[name].transpose("x", "z")
+        p = ds[name].transpose(*_axes_of(ds))
         shown = drawn((p,), "abs", first.high)._replace(name=title)
         if name == "error":
             shown = shown._replace(high=shown.most or 1.0)
@@ -140,11 +164,17 @@ def _errors(ds: xr.Dataset, ax: Any) -> None:
 
 
 def _widths(ds: xr.Dataset, ax: Any) -> None:
-    """Difference of the widths by depth, in a unit that its size suits."""
+    """Difference of the widths by depth, along x or of planes along each axis, in a unit that its size suits."""
+    lines = {"": ds.fwhm_difference}
+    if "axis" in ds.fwhm_difference.dims:
+        lines = {str(axis): ds.fwhm_difference.sel(axis=axis) for axis in ds.axis.values}
     values = np.asarray(ds.fwhm_difference.values, float)
     largest = float(np.nanmax(np.abs(values), initial=0.0)) if np.any(np.isfinite(values)) else 0.0
     factor, unit = next(((f, u) for f, u in ((1, "m"), (1e3, "mm")) if largest * f >= 1), (1e6, "µm"))
-    _curve(ax, ds.z.values, values * factor, "C0")
+    for i, (axis, line) in enumerate(lines.items()):
+        _curve(ax, ds.z.values, np.asarray(line.values, float) * factor, f"C{i}", f"along {axis}" if axis else None)
+    if len(lines) > 1:
+        ax.legend()
     ax.axhline(0, color="0.5", lw=0.8)
     ax.set_ylabel(f"width of b less a [{unit}]")
     units.name_axis(ax.xaxis, "z", ds.z.values, "m")
@@ -153,7 +183,7 @@ def _widths(ds: xr.Dataset, ax: Any) -> None:
         ax.text(0.5, 0.5, "half level not reached", transform=ax.transAxes, ha="center", va="center", color="0.4")
 
 
-def _curve(ax: Any, z: np.ndarray, values: np.ndarray, color: str) -> None:
-    ax.plot(z, values, color=color, marker="o" if z.size < 12 else "")
+def _curve(ax: Any, z: np.ndarray, values: np.ndarray, color: str, label: str | None = None) -> None:
+    ax.plot(z, values, color=color, label=label, marker="o" if z.size < 12 else "")
     if np.ptp(z) > 0:  # where there are no widths, too
         ax.set_xlim(z.min(), z.max())

@@ -9,7 +9,7 @@ import xarray as xr
 
 from .. import validate
 from ..profiles.fwhm import of_samples
-from . import labels, maps, style
+from . import labels, maps, style, volume
 from .quantities import QUANTITIES, drawn, variables
 
 
@@ -26,15 +26,17 @@ def field(
 ) -> Any:
     """Map of a field on (z, x), (z, y) or (x, y), with the slab's faces as dashed lines and its layers, where there is room, as thin ones.
 
+    A volume is drawn as the three planes through its largest \\|p\\|, on one colour scale.
+
     Parameters
     ----------
     ds : Dataset
-        From `beamprop.field` at one frequency and angle; of a volume a plane, such as `ds.sel(z=0.1, method="nearest")`.
+        From `beamprop.field` at one frequency and angle.
     quantity : "abs", "real", "phase", "dB" or "intensity"
         \\|p\\|; Re p on a symmetric scale; the phase on a cyclic one; the level of \\|p\\| over its largest; \\|p\\|^2, or the size of the
         time-averaged intensity where the dataset holds intensity_x and intensity_z.
     ax : Axes, optional
-        By default those of a new figure, as high as the map in true proportion takes.
+        By default those of a new figure, as high as the map in true proportion takes; none for a volume.
     colorbar : bool
     limit : float, optional
         The colour scale's end: \\|p\\| [Pa], or the intensity [W/m^2]; what a level is over. By default the 99.8th percentile, of
@@ -48,7 +50,7 @@ def field(
 
     Returns
     -------
-    Axes
+    Axes, of a volume an array of three: (x, z), (y, z) and (y, x)
 
     Warns
     -----
@@ -69,7 +71,13 @@ def field(
     validate.instance(ds, xr.Dataset, "ds")
     names = variables(ds, quantity)
     labels.need(ds, *names, "x", "z")
-    parts = maps.on_grid(ds, names)
+    parts = maps.on_grid(ds, names, volume=True)
+    if len(parts[0].dims) == 3:
+        volume.check_alone(ax, half_level)
+        size = sum((abs(part) ** 2 for part in parts[1:]), abs(parts[0]) ** 2)
+        return volume.draw(
+            ds, parts[0], drawn(parts, quantity, limit, floor), volume.through_peak(size), width, colorbar
+        )
     if half_level and "z" not in parts[0].dims:
         raise ValueError("half_level: expected False for a plane at one z, got True")
     shown = drawn(parts, quantity, limit, floor)

@@ -33,13 +33,16 @@ BROAD, STEEP = 0.6, 1.0
 APART = 1.2
 
 
-def on_grid(ds: xr.Dataset, names: tuple[str, ...]) -> tuple[xr.DataArray, ...]:
-    """Variables on a plane, its upright axis and then its level one (z, or else x), both rising; refused if they are not on a map."""
+def on_grid(ds: xr.Dataset, names: tuple[str, ...], volume: bool = False) -> tuple[xr.DataArray, ...]:
+    """Variables on a plane, its upright axis and then its level one (z, or else x), both rising; refused if they are not on a map.
+
+    With `volume` they may be on (y, x, z) as well.
+    """
     parts = tuple(ds[name].squeeze(drop=True) for name in names)
     dims = list(map(str, parts[0].dims))
     if more := [d for d in dims if d not in PLACES]:
         raise ValueError(f"ds: expected a field on (z, x); select one of {', '.join(more)}")
-    if len(dims) == 3:
+    if len(dims) == 3 and not volume:
         raise ValueError("ds: expected a field on a plane, got one in a volume: select one of y, x or z")
     if len(dims) < 2:
         raise ValueError(
@@ -70,7 +73,7 @@ def draw(ax: Any, ds: xr.Dataset, p: xr.DataArray, shown: Drawn, width: float | 
     """The map of `shown`, which is on the grid of p, with all that belongs to it; its mesh. `width` [mm] is that of a new figure."""
     across = ax.get_window_extent().width / ax.figure.dpi * INCH if width is None else width - BESIDE
     mesh = mesh_of(ax, p, shown)
-    note = _shape(ax, p, across)
+    note = shape(ax, p, across)
     if "z" in p.dims:
         warn_of_grid(ds, p["z"].values)
         outline(ax, ds, across, shown.line)
@@ -88,7 +91,7 @@ def warn_of_grid(ds: xr.Dataset, z: np.ndarray) -> None:
     slab = slab_of(ds)
     if slab is not None and "frequency" in ds.coords and "average" not in ds.attrs:
         frequency = np.atleast_1d(np.asarray(ds["frequency"].values, float))
-        warn_of_stripes(slab, z, frequency, averages=ds.attrs.get("geometry") != "3-D")
+        warn_of_stripes(slab, z, frequency)
 
 
 # --- proportion -------------------------------------------------------------------------------------------
@@ -100,16 +103,16 @@ def _span(p: xr.DataArray) -> tuple[float, float]:
     return level, upright
 
 
-def _proportion(p: xr.DataArray, across: float) -> float | None:
+def proportion(p: xr.DataArray, across: float) -> float | None:
     """Height over width in true proportion of a map `across` mm wide, or None where that would be a stripe."""
     level, upright = _span(p)
     ratio = upright / level
     return ratio if LOWEST / across <= ratio <= STEEPEST else None
 
 
-def _shape(ax: Any, p: xr.DataArray, across: float) -> str:
+def shape(ax: Any, p: xr.DataArray, across: float) -> str:
     """Give Axes the proportion of their map; a note where it is not the true one."""
-    if _proportion(p, across) is not None:
+    if proportion(p, across) is not None:
         ax.set_aspect("equal")
         return ""
     level, upright = _span(p)

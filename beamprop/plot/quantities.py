@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -59,8 +60,8 @@ class Drawn(NamedTuple):
 
 def variables(ds: xr.Dataset, what: str) -> tuple[str, ...]:
     """The variables that a quantity is made of: the intensity, where the dataset has it, and the pressure for all else."""
-    intensity = ("intensity_x", "intensity_z")
-    return intensity if what == "intensity" and set(intensity) <= set(ds.data_vars) else ("p",)
+    needed = {"intensity_x", "intensity_z"} | ({"intensity_y"} if ds.attrs.get("geometry") == "3-D" else set())
+    return tuple(sorted(needed)) if what == "intensity" and needed <= set(ds.data_vars) else ("p",)
 
 
 def drawn(parts: tuple[xr.DataArray, ...], what: str, limit: float | None = None, floor: float = -40.0) -> Drawn:
@@ -76,7 +77,7 @@ def drawn(parts: tuple[xr.DataArray, ...], what: str, limit: float | None = None
         The least level [dB].
     """
     p, unit = parts[0].values, parts[0].attrs.get("units", "")
-    size = np.hypot(*(part.values for part in parts)) if len(parts) > 1 else np.abs(p)
+    size = functools.reduce(np.hypot, (part.values for part in parts)) if len(parts) > 1 else np.abs(p)
     finite = size[np.isfinite(size)]
     if what == "phase":
         return Drawn(np.degrees(np.angle(p)), "phase", "degree", -180.0, 180.0, -180.0, 180.0, "twilight", "black")

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .base import Beam
+from .in_space import mean_size
 
 
 @dataclass(frozen=True)
@@ -54,3 +55,46 @@ class LateralGradient:
     def at_angle(self, angle: float) -> LateralGradient:
         """The same of the source at another angle [degree]."""
         return LateralGradient(self.beam.at_angle(angle))
+
+
+#: Wavenumbers along x and along y at which the largest |k S| is looked for.
+LOOKED_AT = 33
+
+
+@dataclass(frozen=True)
+class SpaceGradient(LateralGradient):
+    """A `SpaceBeam` with the spectrum kx S(kx, ky) or ky S(kx, ky) of another; along its azimuth it has |k| S(k), which bounds both."""
+
+    along_y: bool
+
+    def spectrum_at(self, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:
+        """kx S or ky S [Pa m]."""
+        return np.asarray((ky if self.along_y else kx) * self.beam.spectrum_at(kx, ky, k0))  # type: ignore[attr-defined]
+
+    def mean_size(self, k: np.ndarray, k0: float) -> np.ndarray:
+        """At most |k| times the mean of |S|."""
+        return np.abs(k) * mean_size(self.beam, k, k0)
+
+    def _tolerance(self, k0: float, tolerance: float) -> float:
+        """That of S at which kx S or ky S is below `tolerance` of its largest value: see `LateralGradient.band`."""
+        beam: Any = self.beam
+        strong = beam.box(k0, 0.3)
+        if not np.all(np.isfinite(strong)):  # sharp edges: no tolerance ends them, but the way to the positions
+            return tolerance
+        kx, ky = np.linspace(strong[:, 0], strong[:, 1], LOOKED_AT).T
+        size = np.abs(beam.spectrum_at(kx[None, :], ky[:, None], k0))
+        own = np.abs(ky[:, None] if self.along_y else kx[None, :]) * size
+        end = float(np.max(np.abs(beam.box(k0, tolerance)[int(self.along_y)])))
+        return tolerance * min(1.0, float(own.max() / size.max()) / end)
+
+    def box(self, k0: float, tolerance: float) -> np.ndarray:
+        """See `SpaceBeam.box`."""
+        return np.asarray(self.beam.box(k0, self._tolerance(k0, tolerance)))  # type: ignore[attr-defined]
+
+    def rings(self, k0: float, tolerance: float) -> tuple[float, float]:
+        """See `SpaceBeam.rings`."""
+        return self.beam.rings(k0, self._tolerance(k0, tolerance))  # type: ignore[attr-defined]
+
+    def at_angle(self, angle: float) -> SpaceGradient:
+        """The same of the source at another angle [degree]."""
+        return SpaceGradient(self.beam.at_angle(angle), self.along_y)
