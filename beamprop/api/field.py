@@ -12,9 +12,11 @@ from .. import memory, validate
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
+from ..sources.source_sum import SourceSum
 from . import checks
 from .cell_average import averaged_row
 from .field_in_space import field_in_space, question_in_space, refuse_options
+from .field_of_sum import field_of_sum
 from .field_question import checked_question, labelled
 from .field_variables import bytes_held, kinds, no_errors, powers
 
@@ -42,7 +44,7 @@ def field(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
-        With y a GaussianBeam, circular or elliptical, a Piston, Bowl, SourcePlane or Array.
+        With y a GaussianBeam, circular or elliptical, a Piston, Bowl, SourcePlane or Array. Also a sum of these, ``a + 0.5j * b``.
     frequency : float or 1-D array, Hz
     x, z : float or 1-D array, m
         Any positions; z not in front of the launch plane ``beam.z0``.
@@ -116,6 +118,9 @@ def field(
     {'y': 49, 'x': 65}
     """
     validate.flag_or_function(progress, "progress")
+    if y is not None and isinstance(beam, SourceSum):
+        refuse_options(boundary, period, variables, average)
+        return field_of_sum(slab, beam, frequency, angle, rtol, (x, y, z, azimuth), progress)
     if y is not None:
         space, labels = question_in_space(slab, beam, frequency, angle, rtol, (x, y, z, azimuth))
         refuse_options(boundary, period, variables, average)
