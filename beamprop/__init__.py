@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from .sources.profile import Profile
     from .sources.slits import Slits
     from .sources.source_plane import SourcePlane
+    from .sources.source_sum import SourceSum
     from .study.sweep import sweep
 
 _HOMES = {
@@ -82,6 +83,7 @@ _HOMES = {
     "sources.profile": ("Profile",),
     "sources.slits": ("Slits",),
     "sources.source_plane": ("SourcePlane",),
+    "sources.source_sum": ("SourceSum",),
     "api.beam_measures": ("beam_measures",),
     "api.beam_width": ("beam_width",),
     "api.bloch": ("bloch",),
@@ -120,6 +122,7 @@ __all__ = [
     "Slits",
     "Solid",
     "SourcePlane",
+    "SourceSum",
     "Tabulated",
     "__version__",
     "beam_measures",

@@ -49,7 +49,9 @@ def test_every_key_of_a_slab(as_text):
         table = {key: str(value).lower() for key, value in table.items()}
     cell = bp.lmmd_cell(0.1 + 0.2j, 0.1, 6, 0.025, 2000.0, HELIUM)
     assert parameters.slab(table) == bp.Slab(cell, 20, HELIUM, bp.Fluid.from_speed(1000.0, 1480.0))
-    assert set(table) | {"medium", "layer", "layers", "background", "after"} == set(parameters.SLAB)
+    assert set(table) | {"medium", "layer", "layers", "background", "after", "after_shear_speed"} == set(
+        parameters.SLAB
+    )
 
 
 @pytest.mark.parametrize(
@@ -82,7 +84,8 @@ def test_every_key_of_a_beam():
     """And no angle, which is an axis."""
     table = {"fwhm": "0.2", "x0": 0.1, "z0": "-0.3", "width_of": "intensity", "form": "rotated"}
     assert parameters.beam(table) == bp.GaussianBeam(0.2, 0.0, 0.1, -0.3, "intensity", "rotated")
-    assert set(table) | {"slits", "profile"} == set(parameters.BEAM)
+    elsewhere = {"slits", "profile", "y0", "azimuth", "piston", "baffle", "bowl", "source_plane", "array"}
+    assert set(table) | elsewhere == set(parameters.BEAM)
 
 
 @pytest.mark.parametrize(

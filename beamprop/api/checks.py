@@ -96,6 +96,8 @@ def unmoved_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: floa
     validate.instance(slab, Slab, "slab")
     if not isinstance(beam, Tilted):  # to look a protocol up takes longer than all other checks
         validate.instance(beam, Beam, "beam")
+    if angle is not None and not getattr(beam, "share_angle", True):
+        raise validate.refuse("angle", "none with a sum of sources at angles of their own", angle)
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
     hints.warn_of_air(slab, f)

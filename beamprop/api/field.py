@@ -14,9 +14,11 @@ from ..fields.question import FieldQuestion
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
+from ..sources.source_sum import SourceSum
 from . import checks
 from .cell_average import averaged_row
 from .field_in_space import question_at
+from .field_of_sum import field_of_sum, refuse_options
 from .field_question import labelled
 from .field_variables import bytes_held, kinds, no_errors, of_component, powers
 
@@ -45,7 +47,7 @@ def field(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
-        With y a GaussianBeam, circular or elliptical, a Piston, Bowl, SourcePlane or Array.
+        With y a GaussianBeam, circular or elliptical, a Piston, Bowl, SourcePlane or Array. Also a sum of these, ``a + 0.5j * b``.
     frequency : float or 1-D array, Hz
     x, z : float or 1-D array, m
         Any positions; z not in front of the launch plane ``beam.z0``.
@@ -124,6 +126,9 @@ def field(
     validate.flag_or_function(progress, "progress")
     variables = of_component(component, variables)
     places, values_of, sides = (x, y, z, azimuth), (variables, average), (boundary, period)
+    if y is not None and isinstance(beam, SourceSum):
+        refuse_options(*sides, *values_of)
+        return field_of_sum(slab, beam, frequency, angle, rtol, places, progress)
     question, labels = question_at(places, slab, beam, (frequency, angle), sides, rtol, values_of)
     names, shape = labels.variables, question.shape
     memory.check_field((*shape[:3], math.prod(shape[3:])), values=bytes_held(names))

@@ -15,6 +15,7 @@ from ..media.fluids import Fluid
 from ..media.planes import warn_of_stripes
 from ..media.structures import Layer, Slab
 from ..sources.base import Beam
+from ..sources.source_sum import SourceSum
 from . import checks, hints
 from .field_question import Labels, checked_question
 from .field_variables import IN_SPACE, checked_variables
@@ -70,6 +71,8 @@ def question_in_space(
     beams = checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     x, y, z = (validate.axis(v, name) for v, name in zip(places, "xyz", strict=False))
     in_space: Any = getattr(beam, "in_space", None)
+    if in_space is None and isinstance(beam, SourceSum):
+        raise validate.refuse("beam", "one source where y is given: of a sum only field(y=) is available yet", beam)
     if in_space is None:
         raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given", beam)
     source_beam: Any = beam

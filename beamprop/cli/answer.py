@@ -89,9 +89,9 @@ def check_output(o: dict[str, Any], axes: Mapping[str, Any], field: bool = False
     if o.get("memory") is not None and o.get("save_study"):
         raise click.UsageError("--save-study: expected to be left out beside --memory, which study files do not have")
     output = o["output"]
-    for name in ("layers", "profile"):
+    for name in ("layers", "profile", "source_plane", "array"):
         if output is not None and o.get(name) is not None and Path(o[name]).resolve() == output.resolve():
-            raise click.UsageError(f"--output: expected a file other than that of --{name}, got {str(output)!r}")
+            raise click.UsageError(f"--output: expected a file other than that of {typed(name)}, got {str(output)!r}")
     several = [f"--{name.replace('_', '-')}" for name, value in axes.items() if is_several(value)]
     ending = "" if output is None else output.suffix.lower()
     if ending == ".csv" and len(several) > 1:

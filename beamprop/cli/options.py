@@ -160,7 +160,7 @@ def option_of(table: Mapping[str, Parameter], name: str, group: str) -> Decorato
     parameter = table[name]
     if parameter.parse is parameters.switch:
         return switch(typed(name), text=parameter.text, group=group)
-    kind = Checked(parameter.parse, "FILE" if name in ("profile", "layers") else "TEXT")
+    kind = Checked(parameter.parse, "FILE" if name in ("profile", "layers", "source_plane", "array") else "TEXT")
     if parameter.words:
         kind = words(*parameter.words)
     elif parameter.parse in _METAVARS:
@@ -173,6 +173,7 @@ _METAVARS = {
     parameters.number: "COMPLEX",
     parameters.real: "NUMBER",
     parameters.length: "LENGTH",
+    parameters.widths: "LENGTH",
     parameters.frequency: "FREQUENCY",
     parameters.count: "COUNT",
 }

@@ -113,6 +113,11 @@ def beam_measures(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @launch("-0.1, 0.73 wavelengths")
 @axis("x", "Lateral positions [m], an axis.", "-0.7:0.7:561, 5.1 wavelengths to both sides")
+@axis(
+    "y",
+    "Positions across x [m], an axis, in three dimensions.",
+    "none; through the middle of sources of three dimensions",
+)
 @axis("z", "Depths [m], an axis.", "from the launch plane to a little behind the slab, on faces of thin cells")
 @option(
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
@@ -150,7 +155,7 @@ def field(**o: Any) -> None:
 
         question = field_arguments(described("field", o))
         if o["as_json"]:
-            sizes = [np.size(question[n]) for n in ("frequency", "angle", "x", "z")]
+            sizes = [np.size(question[n]) for n in ("frequency", "angle", "x", "z")] + [np.size(question.get("y", 0.0))]
             check_text(math.prod(sizes) * len(variables))
         if o["memory"] is None:
             return field(**question, progress=progress(o))
@@ -159,15 +164,17 @@ def field(**o: Any) -> None:
 
     if o["plot"] and (is_several(o["frequency"]) or is_several(o["angle"])):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
-    if o["plot"] and any(isinstance(o[n], float) for n in "xz"):
-        raise click.UsageError("--plot: expected axes for --x and --z, got one value")
+    flat = [n for n in "xyz" if isinstance(o[n], float) or (n == "y" and o[n] is None)]
+    if o["plot"] and len(flat) != 1:
+        wanted = "--x and --z" if o["y"] is None else "two of --x, --y and --z"
+        raise click.UsageError(f"--plot: expected axes for {wanted}, got {'one value' if flat else 'three axes'}")
     if o["plot"] and "p" not in variables:
         raise click.UsageError(f"--plot: expected p among --variables, got {','.join(variables)}")
     if o["memory"] is not None and (o["plot"] or o["as_json"] or not o["output"]):
         raise click.UsageError("--memory: expected --output alone, for a map that is written and never held")
     check_output(
         o,
-        {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None else o[n] for n in "xz"},
+        {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None and n != "y" else o[n] for n in "xyz"},
         field=True,
     )
     answer(o, ask, drawing("field", o), lambda ds: _field_summary(ds, variables), saved=o["memory"] is not None)
@@ -177,7 +184,7 @@ def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
     sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
     on_planes = [n for n in variables if n == "power_through"]
     on_points = [n for n in variables if n not in on_planes]
-    sizes_of_planes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items() if d != "x")
+    sizes_of_planes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items() if d not in ("x", "y"))
     parts = ((on_points, sizes), (on_planes, sizes_of_planes))
     lines = [f"{', '.join(names)} on ({axes})" for names, axes in parts if names and axes]
     for name, v in ds.data_vars.items():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from .. import parameters
 from ..parameters import Parameter
+from ..sources.in_space import needs_y
 from ..study import questions
 from ..study.files import StudyFile
 
@@ -149,6 +150,8 @@ def _bounded(control: Control) -> Control:
 def _of_beam(document: Mapping[str, Any], design: parameters.Design) -> Iterator[Control]:
     own, beam = questions.arguments(document), document["beam"]
     wave, group = design.wavelength, "Beam"
+    if own.get("y") is not None or needs_y(parameters.beam(beam, design.scale)):
+        raise ValueError("beam: expected a source of two dimensions on the page, got one of three: ask field for it")
     angle = _middle(own.get("angle"), 0.0)
     yield Control("question.angle", "Angle", group, angle, unit="°", low=-80, high=80, least=-89.9, most=89.9)
     frequency = _middle(own["frequency"], design.frequency)

@@ -142,7 +142,7 @@ def _call(function: str, arguments: list[str]) -> str:
 def _beam(description: Description) -> str:
     """The line that makes `beam`."""
     table = description["beam"]
-    made = parameters.beam(table, slab_of(description)[1].scale)
+    made: Any = parameters.beam(table, slab_of(description)[1].scale)
     z0 = f"z0={made.z0!r}"
     if isinstance(made, Slits):
         return f"beam = bp.Slits({made.width!r}, {made.separation!r}, {made.count}, {z0})"
@@ -175,7 +175,7 @@ def _is_plain(table: Mapping[str, Any]) -> bool:
     """Whether a slab is a cell of the paper's, or of layers without models, between half-spaces in words or numbers."""
     layers = table.get("layer") or ()
     return (
-        not {"stack", "layers"} & set(table)
+        not {"stack", "layers", "after_shear_speed"} & set(table)
         and not any("model" in layer for layer in layers)
         and not any(isinstance(table.get(key), Mapping) for key in ("background", "after"))
     )

@@ -35,6 +35,7 @@ from ..sources.piston import Piston
 from ..sources.profile import Profile
 from ..sources.slits import Slits
 from ..sources.source_plane import SourcePlane
+from ..sources.source_sum import SourceSum
 from .labels import label
 
 #: The records that a file can hold; a dispersive property by any other function is kept as a table.
@@ -57,6 +58,7 @@ _RECORDS: dict[str, type] = {
         Profile,
         Slits,
         SourcePlane,
+        SourceSum,
         Tabulated,
         *effective.FUNCTIONS,
         *attenuation.FUNCTIONS,

@@ -35,6 +35,7 @@ from .scale import Design as Design
 from .scale import design as design
 from .sources import BEAM as BEAM
 from .sources import beam as beam
+from .sources import widths as widths
 from .tables import Parameter as Parameter
 from .tables import known
 from .tables import named as named
@@ -59,6 +60,7 @@ AXES: dict[str, Mapping[str, int]] = {
     "frequency": FREQUENCIES,
     "angle": {},
     "x": LENGTHS,
+    "y": LENGTHS,
     "z": LENGTHS,
     "kx": {},
     "kx_over_k0": {},

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
-from .models import MODEL, of_model
+from .models import MODEL, of_model, solid_behind
 from .tables import Parameter, apart, named, read
 from .values import as_it_is, count, frequency, length, number, real, switch
 from .words import described, refused
@@ -77,6 +77,9 @@ SLAB: dict[str, Parameter] = CELL | {
     ),
     "after_density": Parameter(None, number, "Of the half-space behind, if it differs [kg/m3]."),
     "after_speed": Parameter(None, number, "Of the half-space behind, if it differs [m/s]."),
+    "after_shear_speed": Parameter(
+        None, number, "Of a solid half-space behind [m/s], beside its density and (longitudinal) speed."
+    ),
 }
 #: What a layer is described by.
 LAYER: dict[str, Parameter] = {
@@ -321,6 +324,8 @@ def _half_space(table: Mapping[str, Any], values: Mapping[str, Any], key: str, d
 def _behind(table: Mapping[str, Any], values: Mapping[str, Any], before: Fluid) -> Fluid:
     """The half-space behind: as that in front, but for what is given apart."""
     density, speed = values["after_density"], values["after_speed"]
+    if values["after_shear_speed"] is not None:
+        return solid_behind(table, values)
     if values["after"] is None and density is None and speed is None:
         return before
     if values["after"] is None and values["background"] is not None and None in (density, speed):

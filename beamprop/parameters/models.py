@@ -131,3 +131,16 @@ def of_model(values: Mapping[str, Any]) -> Fluid | Membrane:
             raise ValueError(f"{key}: expected a number beside model {name}, got none")
     apart(values, tuple(key for key in values if key not in (*model.needs, *model.may, "model")), f"model {name}")
     return model.make(values)
+
+
+def solid_behind(table: Mapping[str, Any], values: Mapping[str, Any]) -> Any:
+    """A solid half-space by its three numbers."""
+    from ..media.solids import Solid
+
+    apart(table, ("after",), "after_shear_speed")
+    for name in ("after_density", "after_speed"):
+        if values[name] is None:
+            raise ValueError(f"{name}: expected a number beside after_shear_speed, got none")
+    speeds = named("after_speed", "longitudinal_speed"), named("after_shear_speed", "shear_speed")
+    with named("after_density", "density"), speeds[0], speeds[1]:
+        return Solid(values["after_density"], values["after_speed"], values["after_shear_speed"])

@@ -1,50 +1,101 @@
-"""From a table to a beam."""
+"""From a table to a source."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from .tables import Parameter, apart, named, read
-from .values import as_it_is, count, length
+from .values import LENGTHS, as_it_is, count, length, real
 
 if TYPE_CHECKING:
-    from ..sources.gaussian import GaussianBeam
-    from ..sources.profile import Profile
-    from ..sources.slits import Slits
+    from ..sources.base import Beam
+
+
+def _parts(value: Any) -> Any:
+    return value.split(",") if isinstance(value, str) else value
 
 
 def _slits(value: Any, name: str) -> tuple[float, float, int]:
     """Width and separation [m], and a count, as text with commas between or as a list."""
     from .. import validate
 
-    parts = value.split(",") if isinstance(value, str) else value
+    parts = _parts(value)
     if not isinstance(parts, list | tuple) or len(parts) not in (2, 3):
         raise validate.refuse(name, "width,separation or width,separation,count such as 10mm,40mm,2", value)
     return length(parts[0], name), length(parts[1], name), count(parts[2], name) if len(parts) == 3 else 2
 
 
+def widths(value: Any, name: str) -> float | tuple[float, float]:
+    """A width [m], or those along x and y, as text with a comma between or as a list."""
+    from .. import validate
+
+    parts = _parts(value)
+    if not isinstance(parts, list | tuple) or len(parts) == 1:
+        return length(value, name)
+    if len(parts) != 2:
+        raise validate.refuse(name, "a width, or two widths along x and y such as 30mm,15mm", value)
+    return length(parts[0], name), length(parts[1], name)
+
+
+def _bowl(value: Any, name: str) -> tuple[float, float]:
+    """Radius of curvature and aperture [m], as text with a comma between or as a list."""
+    from .. import validate
+
+    parts = _parts(value)
+    if not isinstance(parts, list | tuple) or len(parts) != 2:
+        raise validate.refuse(name, "radius_of_curvature,aperture such as 64mm,64mm", value)
+    return length(parts[0], name), length(parts[1], name)
+
+
 BEAM: dict[str, Parameter] = {
     "fwhm": Parameter(
         0.096,
-        length,
-        "Full width at half maximum at the launch plane [m].",
+        widths,
+        "Full width at half maximum at the launch plane [m]; two, along x and y, of an elliptical beam: 30mm,15mm.",
         shown="0.7 wavelengths, 0.096 in the paper",
         scaled=True,
+        units=LENGTHS,
     ),
     "x0": Parameter(0.0, length, "Middle of the beam [m]."),
+    "y0": Parameter(0.0, length, "Middle of the beam along y, in three dimensions [m]."),
     "z0": Parameter(0.0, length, "Launch plane, at or in front of the near face at 0 [m]."),
+    "azimuth": Parameter(0.0, real, "Direction of the tilt, from x towards y, in three dimensions [degree]."),
     "width_of": Parameter("pressure", as_it_is, "What fwhm is the width of.", words=("pressure", "intensity")),
     "form": Parameter("launch", as_it_is, "Kind of oblique beam.", words=("launch", "rotated")),
     "slits": Parameter(
         None, _slits, "Slits driven in phase instead: width,separation or width,separation,count, such as 10mm,40mm,2."
     ),
     "profile": Parameter(None, as_it_is, "A measured profile instead: a text file of columns x [m], Re p, Im p [Pa]."),
+    "piston": Parameter(None, length, "A circular piston of this radius instead, in three dimensions [m]."),
+    "baffle": Parameter(None, as_it_is, "Around the piston.", words=("rigid", "soft"), shown="rigid"),
+    "bowl": Parameter(
+        None, _bowl, "A focusing bowl instead, its apex at z0: radius_of_curvature,aperture, such as 64mm,64mm."
+    ),
+    "source_plane": Parameter(
+        None, as_it_is, "A measured plane (hologram) instead: a .mat, .npz or .nc file with x, y [m] and p (y, x) [Pa]."
+    ),
+    "array": Parameter(
+        None,
+        as_it_is,
+        "Pistons, bowls or beams at the positions of this text file of columns x, y [m], and Re, Im of their weights.",
+    ),
 }
-_GAUSSIAN = ("fwhm", "x0", "width_of", "form")
+#: What each source but the Gaussian beam is described by beside z0, in the order in which it is looked for.
+_BESIDE = {
+    "slits": (),
+    "profile": (),
+    "piston": ("baffle", "x0", "y0", "array"),
+    "bowl": ("x0", "y0", "array"),
+    "source_plane": ("azimuth",),
+}
+#: Parameters of the Gaussian beam.
+_GAUSSIAN = ("fwhm", "x0", "y0", "azimuth", "width_of", "form")
 
 
-def beam(table: Mapping[str, Any], scale: float = 1.0) -> GaussianBeam | Slits | Profile:
+def beam(table: Mapping[str, Any], scale: float = 1.0) -> Beam:
     """The source, along the normal, from a table with the names of `BEAM`; its angle is an axis of the question.
 
     Parameters
@@ -59,35 +110,85 @@ def beam(table: Mapping[str, Any], scale: float = 1.0) -> GaussianBeam | Slits |
     0.005
     >>> beam({"slits": "10mm,40mm"}).positions
     array([-0.02,  0.02])
+    >>> beam({"piston": "1cm", "baffle": "soft", "z0": "-3cm"})
+    Piston(radius=0.01, baffle='soft', pressure=(1+0j), x0=0.0, y0=0.0, z0=-0.03)
     """
     values = read(table, BEAM, "beam", scale)
-    for source in ("slits", "profile"):
-        if values[source] is not None:
-            apart(table, _GAUSSIAN, source)
-    if values["slits"] is not None:
-        return _of_slits(table, values)
-    if values["profile"] is not None:
-        return _of_file(values)
+    kind = next((name for name in _BESIDE if values[name] is not None), None)
+    known = _GAUSSIAN if kind is None else _BESIDE[kind]
+    names = [name for name in BEAM if name not in (*known, kind, "z0")]
+    if kind is None:
+        if values["baffle"] is not None:
+            raise ValueError(f"baffle: expected to be left out without piston, got {values['baffle']!r}")
+    else:
+        apart(table, tuple(names), kind)
+    if values["array"] is None:
+        return _source(kind, values)
+    apart(table, ("x0", "y0", *(() if kind else ("azimuth",))), "array")
+    return _array(_source(kind, values), values["array"])
+
+
+def _source(kind: str | None, values: Mapping[str, Any]) -> Any:
+    """A single source of a kind."""
+    place = {name: values[name] for name in ("x0", "y0", "z0")}
+    if kind == "slits":
+        return _of_slits(values)
+    if kind == "piston":
+        from ..sources.piston import Piston
+
+        with named("piston", "radius"):
+            return Piston(values["piston"], values["baffle"] or "rigid", **place)
+    if kind == "bowl":
+        from ..sources.bowl import Bowl
+
+        with named("bowl", "radius_of_curvature", "aperture"):
+            return Bowl(*values["bowl"], **place)
+    if kind is not None:
+        return _of_file(kind, values)
     from ..sources.gaussian import GaussianBeam
 
     return GaussianBeam(**{name: values[name] for name in (*_GAUSSIAN, "z0")})
 
 
-def _of_slits(table: Mapping[str, Any], values: Mapping[str, Any]) -> Slits:
+def _of_slits(values: Mapping[str, Any]) -> Any:
     from ..sources.slits import Slits
 
-    apart(table, ("profile",), "slits")
     with named("slits", "width", "separation", "count"):
         width, separation, many = values["slits"]
         return Slits(width, separation, many, values["z0"])
 
 
-def _of_file(values: Mapping[str, Any]) -> Profile:
-    from ..sources.profile import Profile
-
-    with named("profile", "x", "p", "path"):
+@contextmanager
+def _from_file(key: str, what: str, path: Any) -> Iterator[None]:
+    """Errors of a file under the key that names it."""
+    with named(key, "x", "y", "p", "path", "positions", "weights", "element"):
         try:
-            return Profile.from_file(values["profile"], values["z0"])
+            yield
         except OSError as error:
-            got = f"{str(values['profile'])!r} ({error.strerror})"
-            raise ValueError(f"profile: expected a text file that can be read, got {got}") from None
+            raise ValueError(f"{key}: expected {what} that can be read, got {str(path)!r} ({error.strerror})") from None
+
+
+def _of_file(kind: str, values: Mapping[str, Any]) -> Any:
+    from ..sources.profile import Profile
+    from ..sources.source_plane import SourcePlane
+
+    path = values[kind]
+    if kind == "profile":
+        with _from_file(kind, "a text file", path):
+            return Profile.from_file(path, values["z0"])
+    with _from_file(kind, "a .mat, .npz or .nc file", path):
+        return replace(SourcePlane.from_file(path, values["z0"]), azimuth=values["azimuth"])
+
+
+def _array(element: Any, path: Any) -> Any:
+    """Elements at the positions of a text file."""
+    from .. import validate
+    from ..sources.array import Array
+    from ..sources.columns import read_columns
+
+    with _from_file("array", "a text file", path):
+        table = read_columns(validate.as_path(path), 2, 4, "x, y, Re weight, Im weight")
+        weights = table[:, 2] if table.shape[1] > 2 else None
+        if weights is not None and table.shape[1] == 4:
+            weights = weights + 1j * table[:, 3]
+        return Array(table[:, :2], element, weights)

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from .. import validate
-from .base import Beam, sin_degrees
+from .base import Beam, Summable, sin_degrees
 from .in_space import SpaceBeam, mean_size, scattered_spectrum, unit_vector
 
 
 @dataclass(frozen=True, eq=False)
-class Array:
+class Array(Summable):
     """Equal elements at positions of the launch plane, each with a complex weight: a source in three dimensions.
 
     Parameters

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from numbers import Number
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -85,7 +86,43 @@ def sin_degrees(angle: Any) -> np.ndarray:
     return np.where(np.abs(angle) == 30.0, np.copysign(0.5, angle), value)
 
 
-class Tilted:
+class Summable:
+    """A source that can be added to others on its plane, and multiplied with a complex number."""
+
+    __array_ufunc__ = None  # of a NumPy number times a source, too, the source makes the product
+
+    def __add__(self, source: Any) -> Any:
+        """The sum of two sources: a `SourceSum`."""
+        return _sum((self, 1.0), (source, 1.0)) if isinstance(source, Summable) else NotImplemented
+
+    def __sub__(self, source: Any) -> Any:
+        """The difference of two sources."""
+        return _sum((self, 1.0), (source, -1.0)) if isinstance(source, Summable) else NotImplemented
+
+    def __mul__(self, weight: Any) -> Any:
+        """The source times a complex number."""
+        return _sum((self, weight)) if isinstance(weight, Number) else NotImplemented
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Any:
+        """The source times -1."""
+        return _sum((self, -1.0))
+
+
+def _sum(*terms: tuple[Any, Any]) -> Any:
+    from .source_sum import SourceSum
+
+    sources: list[Any] = []
+    weights: list[Any] = []
+    for source, weight in terms:
+        own = source.weights if isinstance(source, SourceSum) else (1.0,)
+        sources += source.sources if isinstance(source, SourceSum) else (source,)
+        weights += [weight * w for w in own]
+    return SourceSum(tuple(sources), tuple(weights))
+
+
+class Tilted(Summable):
     """A source that is an envelope times exp(i k0 sin(angle) (x - centre))."""
 
     angle: float

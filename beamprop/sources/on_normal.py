@@ -10,11 +10,12 @@ import numpy as np
 
 from .. import validate
 from ..validate import as_complex, as_number
+from .base import Summable
 
 _Source = TypeVar("_Source", bound="OnNormal")
 
 
-class OnNormal:
+class OnNormal(Summable):
     """A round source of three dimensions alone, along the normal, whose spectrum about its middle does not end."""
 
     pressure: complex

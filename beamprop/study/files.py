@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: Values that are paths, relative to the file's folder.
-_PATHS = {"slab": ("layers",), "beam": ("profile",), "output": ("file", "plot", "store")}
+_PATHS = {"slab": ("layers",), "beam": ("profile", "source_plane", "array"), "output": ("file", "plot", "store")}
 
 
 class Mistakes(ValueError):

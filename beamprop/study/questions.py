@@ -52,6 +52,7 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
     "field": _BEAM
     | {
         "x": _axis("x"),
+        "y": _axis("y"),
         "z": _axis("z"),
         "boundary": Parameter(
             "open", parameters.as_it_is, "One beam, or a periodic array.", words=("open", "periodic")
@@ -134,14 +135,19 @@ def arguments(description: Description) -> dict[str, Any]:
 
 
 def field_arguments(description: Description) -> dict[str, Any]:
-    """The arguments of `field`, which are those of `save_field` too."""
+    """The arguments of `field`, which are those of `save_field` too; of a source in three dimensions, y is that of its middle by default."""
     given = arguments(description)
     slab, design = slab_of(description)
-    beam = description.get("beam", {})
-    z0 = parameters.length(beam.get("z0", design.launch), "z0")
+    table = description.get("beam", {})
+    z0 = parameters.length(table.get("z0", design.launch), "z0")
+    beam = parameters.beam({**table, "z0": z0}, design.scale)
+    if given["y"] is None and not getattr(beam, "in_space_only", False):
+        del given["y"]
+    elif given["y"] is None:
+        given["y"] = float(getattr(beam, "y0", 0.0))
     return given | {
         "slab": slab,
-        "beam": parameters.beam({**beam, "z0": z0}, design.scale),
+        "beam": beam,
         "frequency": _or(given["frequency"], design.frequency),
         "x": _or(given["x"], design.x),
         "z": design.z(z0, slab) if given["z"] is None else given["z"],
