@@ -126,7 +126,8 @@ def media(
     kL2, kT2 = rho * stiffness, rho * compliance
     values = (rho, eta, compliance, stiffness, 1 - 2 * eta, 1 / apart, 2 / compliance, kL2, kT2, half)
     sizes = ((np.maximum(np.abs(kL2), np.abs(kT2)) + along.largest) * square).max(axis=(1, 2), initial=0.0)
-    serve = (sizes < POLYNOMIAL) & (along.kx.shape[-1] >= MANY)
+    shared = layers.thickness.size > 1  # for a plate the powers take longer than they save
+    serve = (sizes < POLYNOMIAL) & shared & (along.kx.shape[-1] >= MANY)
     coefficients: list[np.ndarray | None] = [None] * len(sizes)
     if serve.any():
         u, v, largest = ((w * square)[serve] for w in (kL2, kT2, along.largest))
