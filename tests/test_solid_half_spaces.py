@@ -6,6 +6,8 @@ import solid_oracles
 from test_solids import ALUMINIUM, EPOXY, IN_WATER, STEEL, WATER, random_layers
 
 import beamprop as bp
+from beamprop.response import solid_half_space
+from beamprop.response.sampled_slab import sample
 
 BRASS = bp.Solid(8400.0, 4400.0, 2200.0)
 K = np.array([0.0, 0.1, 0.24, 0.3, 0.45, 0.49, 0.6, 0.9, 1.3, 4.0])
@@ -100,6 +102,16 @@ def test_acrylic_has_no_leaky_rayleigh_wave():
 
 
 COATED = bp.Slab([bp.Layer(WATER, 1e-3), bp.Layer(ALUMINIUM, 3e-4)], before=WATER, after=STEEL)
+
+
+def test_rounding_errors_are_sought_in_solids_in_contact_too():
+    """A slab moved by little to show its error moves the solids that belong to the half-space."""
+    s = sample(COATED, 1e6)
+    densities = [v.after.run[0].layers.density for v in (s, s.perturbed(1e-9), s.rounded())]
+    densities.append(solid_half_space.moved(s.after, 1e-9).run[0].layers.density)
+    apart = [float(abs(v / densities[0] - 1).max()) for v in densities[1:]]
+    assert 0 < min(apart) <= max(apart) < 1e-8
+
 
 # --- beams -----------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 
 from ..media.solids import SolidBlock
-from .solid_layer import basis
+from .solid_layer import Along, layers_back
 from .solids import Minors, Vector, minors_back, vector_back
 
 Carried = TypeVar("Carried", Minors, Vector)
@@ -20,8 +20,7 @@ def block_back(block: SolidBlock, omega: np.ndarray, kx: np.ndarray, far: Carrie
     units: np.ndarray = np.broadcast_to(np.eye(count)[:, :, None, None], (count, count, *shape)).astype(complex)
     # the map's columns: all units at once along a leading axis
     columns = type(far)._make([*units, np.zeros((count, *shape))])
-    for j in reversed(range(block.layers.thickness.size)):
-        y = basis(block.layers, j, omega, kx)
+    for _, y in layers_back(block.layers, omega, Along(kx)):
         columns = minors_back(columns, y) if isinstance(columns, Minors) else vector_back(columns, y)
     log = columns.log.max(axis=0)
     weight = np.exp(columns.log - log)

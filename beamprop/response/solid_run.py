@@ -14,7 +14,7 @@ import numpy as np
 
 from ..media.solids import SolidBlock, SolidLayers
 from .layer import State
-from .solid_layer import Basis, basis
+from .solid_layer import TOGETHER, Along, Basis, basis, layers_back, media
 from .solid_power import block_back
 from .solids import Minors, Vector, minors_back, of_fluid, to_fluid, vector_back
 
@@ -37,7 +37,7 @@ class RunMatrix(NamedTuple):
 def run_matrix(run: tuple[SolidBlock, ...], omega: np.ndarray, kx: np.ndarray) -> RunMatrix:
     """The matrix of a run at omega (F, 1) and kx (F, n)."""
     if _single(run):
-        return _plate(basis(run[0].layers, 0, omega, kx))
+        return _plate(_share(run[0].layers, 0, omega, Along(kx)))
     one, zero = np.ones(np.broadcast_shapes(omega.shape, kx.shape), complex), 0.0
     ends = of_fluid(one, zero * one, zero * one.real), of_fluid(zero * one, one, zero * one.real)
     (by_p, by_q), (v,) = through(run, omega, kx, ends, (_clamped(omega, kx),))
@@ -132,9 +132,9 @@ def _through(
     faces: np.ndarray,
 ) -> Iterator[tuple[np.ndarray, Vector]]:
     """Indices of the depths in each layer, and the state there, before the run's divisor."""
-    minors = [far]
+    minors, along = [far], Along(kx)
     for v, j in reversed(layers):
-        minors.append(minors_back(minors[-1], basis(v, j, omega, kx)))
+        minors.append(minors_back(minors[-1], _share(v, j, omega, along)))
     minors = minors[::-1]
     near = minors[0]
     state = Vector(near.q12, -near.q11, near.b, 0 * near.b, near.log)
@@ -143,9 +143,14 @@ def _through(
         here = np.flatnonzero(owner == i)
         if here.size:
             rest = (np.clip((behind[here] - faces[i + 1]) / v.thickness[j], 0.0, 1.0))[:, None]
-            at = minors_back(minors[i + 1], basis(v, j, omega, kx, rest))
-            yield here, _ahead(state, minors[i], at, basis(v, j, omega, kx, 1 - rest))
-        state = _ahead(state, minors[i], minors[i + 1], basis(v, j, omega, kx))
+            at = minors_back(minors[i + 1], _share(v, j, omega, along, rest))
+            yield here, _ahead(state, minors[i], at, _share(v, j, omega, along, 1 - rest))
+        state = _ahead(state, minors[i], minors[i + 1], _share(v, j, omega, along))
+
+
+def _share(layers: SolidLayers, j: int, omega: np.ndarray, along: Along, share: np.ndarray | float = 1.0) -> Basis:
+    """`share` of layer j."""
+    return basis(media(layers, slice(j, j + 1), omega, along, share)[0], along)
 
 
 #: The components of a state, and the pairs whose minors tell two of them from the others.
@@ -201,10 +206,6 @@ def _single(run: tuple[SolidBlock, ...]) -> bool:
     return len(run) == 1 and run[0].periods == 1 and run[0].layers.thickness.size == 1
 
 
-#: Layers ahead among which a like one is looked for: so many are kept at most.
-ALIKE = 4
-
-
 def through(
     run: tuple[SolidBlock, ...],
     omega: np.ndarray,
@@ -213,28 +214,18 @@ def through(
     vectors: tuple[Vector, ...],
 ) -> tuple[tuple[Minors, ...], tuple[Vector, ...]]:
     """Carry minors, and solutions, back through a run: its layers are taken once for all of them."""
+    along = Along(kx)
     for block in reversed(run):
         if block.periods > 1:
             minors = tuple(block_back(block, omega, kx, m) for m in minors)
             vectors = tuple(block_back(block, omega, kx, v) for v in vectors)
             continue
-        for j, y in _layers_back(block.layers, omega, kx):
+        for j, y in layers_back(block.layers, omega, along):
             # the size is taken out now and then, and wherever a layer may change it by much
-            sized = j % 8 == 0 or not y.thin
+            sized = j % TOGETHER == 0 or not y.thin
             minors = tuple(minors_back(m, y, sized) for m in minors)
             vectors = tuple(vector_back(v, y, sized) for v in vectors)
     return minors, vectors
-
-
-def _layers_back(layers: SolidLayers, omega: np.ndarray, kx: np.ndarray) -> Iterator[tuple[int, Basis]]:
-    """Layers from the far side on; what is made of a layer serves for its like among the next, as in a lattice."""
-    keys = [tuple(v[j].tobytes() for v in layers) for j in range(layers.thickness.size)]
-    made: dict[tuple, Basis] = {}
-    for j in reversed(range(len(keys))):
-        y = made.pop(keys[j]) if keys[j] in made else basis(layers, j, omega, kx)
-        if keys[j] in keys[max(0, j - ALIKE) : j]:
-            made[keys[j]] = y
-        yield j, y
 
 
 def _clamped(omega: np.ndarray, kx: np.ndarray) -> Vector:
@@ -258,14 +249,14 @@ def _in_size(p: np.ndarray, q: np.ndarray, log: np.ndarray, divisor: np.ndarray)
 
 def _plate(y: Basis) -> RunMatrix:
     """One layer in closed form: its matrix is made of what the symmetric and the antisymmetric waves do over half of it."""
-    w, f, k2 = y.waves, y.products, y.k2
-    e = k2 * (2 / (y.rho * y.compliance))
-    odd = 2 * y.rho * (f.sin_cos + 2 * k2 * (2 - e) * f.sigma)
-    even = 2 * y.rho * (f.cos_sin - 2 * e * (f.cos_sin - y.eta * f.sin_cos - k2 * f.sigma))
+    m, w, f, k2 = y.medium, y.waves, y.products, y.k2
+    e = k2 * (2 / (m.rho * m.compliance))
+    odd = 2 * m.rho * (f.sin_cos + 2 * k2 * (2 - e) * f.sigma)
+    even = 2 * m.rho * (f.cos_sin - 2 * e * (f.cos_sin - m.eta * f.sin_cos - k2 * f.sigma))
     sines = 2 * y.a2 * f.sin_sin
     shear = w.cos_s * w.sin_s
-    rest = shear - y.eta * w.cos_p * w.sin_p - k2 * (w.sin_ps * w.cos_p + w.cos_ps * w.sin_s)
-    divisor = 2 * y.rho * (shear - 2 * e * rest)
+    rest = shear - m.eta * w.cos_p * w.sin_p - k2 * (w.sin_ps * w.cos_p + w.cos_ps * w.sin_s)
+    divisor = 2 * m.rho * (shear - 2 * e * rest)
     diagonal = -sines * odd
     zero = np.zeros(divisor.shape)
     log, growth = (zero if g is None else 2 * g for g in (w.growth, f.growth))

@@ -83,18 +83,19 @@ def to_fluid(minors: Minors) -> tuple[np.ndarray, np.ndarray]:
 
 def minors_back(far: Minors, y: Basis, sized: bool = True) -> Minors:
     """Carry minors back through a layer; their size goes into the logarithm if they are to be `sized`."""
-    f, coupling, sigma = y.products, 1 - 2 * y.eta, y.products.sigma * (1 / (1 - y.eta))
+    f, m = y.products, y.medium
+    sigma = f.sigma * m.per_apart
     cosine, a_cosine, b_cosine = f.cos_cos, y.a2 * f.sin_sin, y.b2 * f.sin_sin
     a_sine, b_sine = y.a2 * sigma, y.b2 * sigma
     sine = f.cos_sin + a_sine
     a, b, q11, q12, q21, log = far
     # a' and -b'; what follows adds in place, for fresh arrays take as long as the sums
     turn = y.twice_kx * q11
-    rise = y.compliance * q12
-    rise -= y.rho * q21
+    rise = m.compliance * q12
+    rise -= m.rho * q21
     rise -= turn
-    turn *= coupling
-    turn += y.stiffness * q12
+    turn *= m.coupling
+    turn += m.stiffness * q12
     turn += y.lateral * q21
     # twice a and b at the middle, about which they are even, and q11, q12 and q21 odd
     a_middle = cosine * a
@@ -121,10 +122,10 @@ def minors_back(far: Minors, y: Basis, sized: bool = True) -> Minors:
     near_b += a_cosine * a_middle
     near_b -= b
     q12 = q12 - y.lateral * a_sum
-    q12 -= y.rho * b_sum
-    q21 = q21 - y.stiffness * a_sum
-    q21 += y.compliance * b_sum
-    a_sum *= coupling
+    q12 -= m.rho * b_sum
+    q21 = q21 - m.stiffness * a_sum
+    q21 += m.compliance * b_sum
+    a_sum *= m.coupling
     a_sum += b_sum
     near = Minors(near_a, near_b, q11 - y.kx * a_sum, q12, q21, log)
     return normalised(near) if sized else near
@@ -160,11 +161,12 @@ def from_waves(n: tuple[np.ndarray, ...], x: np.ndarray | float, y: Split, log: 
 
 def vector_back(v: Vector, y: Basis, sized: bool = True) -> Vector:
     """Carry one solution back through a layer; its size as in `minors_back`."""
-    f, k, coupling, shear = y.waves, y.kx, y.kx * (1 - 2 * y.eta), y.k2 * (2 / y.compliance)
-    shear -= y.rho
+    f, m, k = y.waves, y.medium, y.kx
+    coupling, shear = k * m.coupling, y.k2 * m.shear
+    shear -= m.rho
     p, X, q, T, log = v
     dq = coupling * X
-    dq -= y.stiffness * p
+    dq -= m.stiffness * p
     dT = coupling * p
     dT += y.lateral * X
     # B A + b^2 is of rank 1: -(1 - eta) (w^2/mu, 2 k) times (shear, -k)
@@ -173,7 +175,7 @@ def vector_back(v: Vector, y: Basis, sized: bool = True) -> Vector:
     # twice q and T at the middle, about which they are even, and p and X odd
     q_middle = f.cos_s * q
     q_middle -= f.sin_s * dq
-    q_middle += y.compliance * turn
+    q_middle += m.compliance * turn
     q_middle += q_middle
     T_middle = f.cos_s * T
     T_middle -= f.sin_s * dT
@@ -182,20 +184,20 @@ def vector_back(v: Vector, y: Basis, sized: bool = True) -> Vector:
     turn = _turn(shear, q_middle, k, T_middle)
     sine, cosine = f.sin_ps * turn, f.cos_ps * turn
     q_sum, T_sum = f.sin_s * q_middle, f.sin_s * T_middle
-    q_sum += y.compliance * sine
+    q_sum += m.compliance * sine
     T_sum += y.twice_kx * sine
     if f.growth is not None:
         p, X, q, T = (c * np.exp(-2 * f.growth) for c in (p, X, q, T))
         log = log + 2 * f.growth
     q_middle *= f.cos_s
-    q_middle += y.compliance * cosine
+    q_middle += m.compliance * cosine
     q_middle -= q
     T_middle *= f.cos_s
     T_middle += y.twice_kx * cosine
     T_middle -= T
-    p = p - y.rho * q_sum
+    p = p - m.rho * q_sum
     p += k * T_sum
-    X = X - y.compliance * T_sum
+    X = X - m.compliance * T_sum
     X += k * q_sum
     near = Vector(p, X, q_middle, T_middle, log)
     if not sized:
