@@ -81,8 +81,7 @@ def plane_of(s: SampledSlab, source: Any, transfer: TransferFunction, z: float, 
     quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
     contour = quadrature.contour
     lattice = contour.lattice
-    waves = np.zeros((lattice.ky.size, lattice.kx.size), complex)
-    waves.ravel()[lattice.inside] = lattice.on_lattice(transfer(contour.k, planes))[0]
+    (waves,) = lattice.planes(transfer(contour.k, planes))
     return Plane(lattice.kx, lattice.ky, waves * lattice.spectra(s.k0, beams)[0], quadrature.budget)
 
 

@@ -10,6 +10,7 @@ h_L depends on |k| alone, and many points of a lattice have the same |k|: it is 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,14 +65,25 @@ class Lattice(NamedTuple):
         float, np.ndarray
     ]  #: spectra by angle, kept for all sums on the lattice: those of arrays and pistons take longer than sums
 
+    @property
+    def by_rows(self) -> bool:
+        """Whether `rows` serves it."""
+        return True
+
     def spectra(self, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
         """S dkx dky/(2 pi)^2 of all beams of the lattice's source: (Ny, Nx) each."""
-        kx, ky = self.kx[None, :], self.ky[:, None]
-        for angle in map(float, beams.angles):
-            if angle not in self.known:
-                beam: Any = beams.at(angle)
-                self.known[angle] = self.area * beam.spectrum_at(kx, ky, k0)
-        return [self.known[float(a)] for a in beams.angles]
+        return spectra(self, k0, beams)
+
+    def strengths(self, k0: float, beams: AngleInterpolation) -> np.ndarray:
+        """|w M| of each node at the radii of the strongest plane waves of the lattice, roughly: (n,)."""
+        strongest = np.max(np.abs(self.spectra(k0, beams)), axis=0)
+        at_radii = np.bincount(self.of_point.ravel(), strongest.ravel(), len(self.table.columns) + 1)
+        by_radius = self.table.matrix.T @ at_radii[:-1]
+        return np.asarray(np.sqrt((self.kernel.real**2 + self.kernel.imag**2) @ by_radius**2))
+
+    def planes(self, h: np.ndarray) -> Iterator[np.ndarray]:
+        """h_L at the points of the lattice for each plane of h (Z, n): (Ny, Nx) each."""
+        return (values[self.of_point] for values in self.at_radii(h))
 
     def at_radii(self, h: np.ndarray) -> np.ndarray:
         """h_L of h (Z, n) at the radii, and 0: (Z, u + 1), to be taken at `of_point`."""
@@ -79,6 +91,16 @@ class Lattice(NamedTuple):
         out = np.zeros((len(h), len(self.table.columns) + 1), complex)
         out[:, :-1] = (self.table.matrix @ columns).view(complex).T
         return out
+
+
+def spectra(grid: Any, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
+    """S of all beams times the area of a grid's points: (Ny, Nx) each."""
+    kx, ky = grid.kx[None, :], grid.ky[:, None]
+    for angle in map(float, beams.angles):
+        if angle not in grid.known:
+            beam: Any = beams.at(angle)
+            grid.known[angle] = grid.area * beam.spectrum_at(kx, ky, k0)
+    return [grid.known[float(a)] for a in beams.angles]
 
 
 def multiples(low: float, high: float, window: float) -> np.ndarray:
@@ -132,12 +154,11 @@ def positions_for(rtol: float) -> int:
 
 
 def fields(
-    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+    lattice: Any, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:
     """p of all beams on the planes of h (Z, n), at every (y, x), into out (B, Z, Y, X): two matrix products a plane."""
     over_x, over_y = along(lattice.kx, x), along(lattice.ky, y)
-    for i, values in enumerate(lattice.at_radii(h)):
-        plane = values[lattice.of_point]
+    for i, plane in enumerate(lattice.planes(h)):
         for spectrum, into in zip(spectra, out[:, i], strict=True):
             _plane(spectrum * plane, over_x, over_y, into)
 
