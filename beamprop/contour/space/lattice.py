@@ -25,6 +25,9 @@ from .along import Along, along, real_product
 FINE = 9
 POSITIONS = ((1e-5, 10), (1e-7, 12), (1e-9, 14), (0.0, 16))
 
+#: Radii whose weights are formed at a time, in the cache.
+BLOCK = 2**11
+
 
 class Table(NamedTuple):
     """Even radii, and Lagrange's polynomials through the nearest of them for each of others (u,)."""
@@ -48,7 +51,7 @@ class Table(NamedTuple):
     def _spread(columns: np.ndarray, weights: np.ndarray, size: int) -> Any:
         from scipy.sparse import csr_array
 
-        rows = np.arange(len(columns) + 1) * columns.shape[1]
+        rows = np.arange(len(columns) + 1, dtype=columns.dtype) * columns.shape[1]
         return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(columns), size))
 
 
@@ -135,17 +138,21 @@ def radii_of(
 
 def interpolation(radii: np.ndarray, step: float, positions: int) -> Table:
     """Even positions by `step`, and Lagrange's polynomials through so many nearest ones of each radius."""
-    base = np.floor(radii / step).astype(int) - positions // 2 + 1
-    differences = radii / step - base - np.arange(positions)[:, None]
-    weights = np.ones(differences.shape)
-    np.cumprod(differences[:-1], axis=0, out=weights[1:])
-    weights[:-1] *= np.cumprod(differences[:0:-1], axis=0)[::-1]
-    whole = np.arange(positions)
-    scale = [(-1) ** (positions - 1 - j) * math.factorial(j) * math.factorial(positions - 1 - j) for j in whole]
-    weights /= np.array(scale, float)[:, None]
+    base = np.floor(radii / step).astype(np.int32) - positions // 2 + 1
+    whole, weights = np.arange(positions, dtype=np.int32), np.empty((radii.size, positions))
+    scale = [
+        (-1) ** (positions - 1 - j) * math.factorial(j) * math.factorial(positions - 1 - j) for j in range(positions)
+    ]
+    for start in range(0, radii.size, BLOCK):
+        part = slice(start, start + BLOCK)
+        differences = radii[part] / step - base[part] - whole[:, None]
+        products = np.ones(differences.shape)
+        np.cumprod(differences[:-1], axis=0, out=products[1:])
+        products[:-1] *= np.cumprod(differences[:0:-1], axis=0)[::-1]
+        weights[part] = (products / np.array(scale, float)[:, None]).T
     first, last = int(base.min(initial=0)), int(base.max(initial=0))
     nodes = step * (first + np.arange(last - first + positions))
-    return Table(nodes, (base - first)[:, None] + whole, np.ascontiguousarray(weights.T))
+    return Table(nodes, (base - first)[:, None] + whole, weights)
 
 
 def positions_for(rtol: float) -> int:
