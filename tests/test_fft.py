@@ -62,3 +62,13 @@ def test_a_field_without_pyfftw(monkeypatch):
     assert lengths
     # exp(sigma X) magnifies the rounding of either transform; the plan keeps that below a hundredth of rtol, 1e-8
     assert np.abs(without - with_pyfftw).max() < 1e-10 * np.abs(with_pyfftw).max()
+
+
+def test_a_cosine_series_through_values():
+    """Of a polynomial of Chebyshev polynomials, at angles between: exact."""
+    at = (np.arange(9) + 0.5) * np.pi / 9
+
+    def of(turn):
+        return 2 + 1j * np.cos(turn) - 3 * np.cos(8 * turn)
+
+    assert np.max(np.abs(fft.cosine_series(of(at), 50) - of(np.arange(51) * np.pi / 50))) < 1e-13

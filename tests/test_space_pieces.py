@@ -143,3 +143,15 @@ def test_directions_are_exact_at_quarters():
 def test_a_spectrum_without_end_stays_so_when_it_is_widened():
     endless = sheet.Spectrum(np.array([[-np.inf, np.inf], [-np.inf, np.inf]]), 0.0, np.inf)
     assert np.array_equal(endless.wider(1.5).box, endless.box)
+
+
+def test_the_mean_over_directions_follows_narrow_spectra():
+    """Wide beams have spectra of few directions; against a hundred times as many directions as are taken."""
+    from beamprop.sources.in_space import EllipticalGaussian, mean_size
+
+    k = np.linspace(30.0, 50.0, 5)
+    turn = 2 * np.pi * np.arange(20_000) / 20_000
+    for radii in ((0.06, 0.06), (0.4, 0.2)):
+        beam = EllipticalGaussian(radii, 45.0, 20.0, 0.0)
+        plain = np.abs(beam.spectrum_at(np.outer(k, np.cos(turn)), np.outer(k, np.sin(turn)), 50.0)).mean(axis=1)
+        assert mean_size(beam, k, 50.0) == pytest.approx(plain, rel=1e-9)

@@ -121,3 +121,12 @@ def next_smooth(n: int) -> int:
             three *= 3
         five *= 5
     return best
+
+
+def cosine_series(values: np.ndarray, n: int) -> np.ndarray:
+    """The cosine series through values (N,) at (j + 1/2) pi/N, at the angles i pi/n, i = 0 to n > N: (n + 1,)."""
+    from scipy.fft import dct
+
+    series = np.zeros(n + 1, complex)
+    series[: values.size] = dct(values, type=2) / (2 * values.size)
+    return np.asarray(dct(series, type=1))

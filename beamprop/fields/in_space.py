@@ -73,12 +73,9 @@ class SpaceWaves(NamedTuple):
 
     @property
     def strengths(self) -> np.ndarray:
-        """|w M| of each node at the radii of the strongest plane waves of the lattice, roughly."""
+        """By the lattice, or the means of |S| over directions."""
         grid = self.quadrature.contour.lattice
-        strongest = np.max(np.abs(grid.spectra(self.k0, self.sources)), axis=0)
-        at_radii = np.bincount(grid.of_point.ravel(), strongest.ravel(), len(grid.table.columns) + 1)
-        by_radius = grid.table.matrix.T @ at_radii[:-1]
-        return np.asarray(np.sqrt((grid.kernel.real**2 + grid.kernel.imag**2) @ by_radius**2))
+        return np.asarray(grid.strengths(self.k0, self.sources))
 
     def fill(self, h: np.ndarray, out: np.ndarray) -> None:
         """By rows y where there are fewer of them than planes, else by planes."""
@@ -87,7 +84,7 @@ class SpaceWaves(NamedTuple):
         by_interpolation = sources.weights is not None
         summed = np.empty((sources.angles.size, *out.shape[1:]), complex) if by_interpolation else out
         view = summed.reshape(*summed.shape[:2], self.y.size, self.x.size)
-        fields = lattice.rows if ROW_OVER_PLANE * self.y.size < h.shape[0] else lattice.fields
+        fields = lattice.rows if grid.by_rows and ROW_OVER_PLANE * self.y.size < h.shape[0] else lattice.fields
         fields(grid, spectra, h, self.x, self.y, view)
         evaluate.check_finite(summed)
         if by_interpolation:

@@ -57,8 +57,8 @@ def has_edge(beam: Any) -> bool:
     return not np.all(np.isfinite(beam.box(1.0, 0.5)))
 
 
-#: Directions over which |S| is averaged.
-AVERAGED = 256
+#: Directions over which |S| is averaged: as many as follow its phases at the tolerance ENDED of the source, between these.
+AVERAGED, ENDED = (48, 256), 1e-6
 
 
 def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
@@ -66,7 +66,9 @@ def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
     own = getattr(beam, "mean_size", None)
     if own is not None:
         return np.asarray(own(k, k0))
-    turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(AVERAGED) / AVERAGED
+    phases = float(np.max(k)) * math.hypot(*beam.half_widths(ENDED))
+    count = math.ceil(np.clip(2 * phases, *AVERAGED))
+    turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(count) / count
     kx, ky = (np.multiply.outer(k, along) for along in (np.cos(turn), np.sin(turn)))
     return np.asarray(np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1))
 

@@ -41,12 +41,12 @@ class Along(NamedTuple):
         if K % 2:
             even[0] /= 2
         part, half = out[P - len(self.cosines) :], P // 2
-        np.copyto(part, _product(self.cosines, even))
+        np.copyto(part, real_product(self.cosines, even))
         if not np.any(odd):
             if self.in_pairs:
                 out[:half] = out[P - half :][::-1]
         else:
-            change = _product(self.sines, odd)
+            change = real_product(self.sines, odd)
             if self.in_pairs:
                 np.subtract(part[P % 2 :], change[P % 2 :], out=out[:half][::-1])
             part += change
@@ -68,6 +68,6 @@ def along(k: np.ndarray, y: np.ndarray) -> Along:
     return Along((y.size, k.size), np.cos(phases), np.sin(phases), before, after)
 
 
-def _product(real: np.ndarray, values: np.ndarray) -> np.ndarray:
+def real_product(real: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Real (P, K) by complex (K, N), as pairs of real columns."""
     return product(real, values.view(float)).view(complex)

@@ -17,9 +17,9 @@ from ..check_points import Checks
 from ..choose import arriving
 from ..paths import Extent
 from ..quadrature import Quadrature
-from ..search import Planned, Search, first_plan
+from ..search import Planned, Search, first_plan, with_poles
 from ..unseen_bands import with_unseen_bands
-from .sheet import CUT, INSIDE, Sheet, fall, landed, margin_of, spectrum_of
+from .sheet import ASIDE, CUT, GAP, INSIDE, Sheet, fall, landed, margin_of, spectrum_of
 
 #: Positions along x and along y at which contours are compared: of those that are requested, and about the source, with twice as many
 #: gaps. Their products are some hundred positions, as many as on a line.
@@ -40,7 +40,7 @@ def choose_in_space(
             "slab: expected half-spaces that carry forward waves where y is given, got one that carries backward waves: "
             "not available in three dimensions yet"
         )
-    sheet = _sheet(sources, grid)
+    sheet = _sheet(sources, s.k0, grid)
     extent = _extent(s, sources, sheet, z, rtol)
     _, planes = check_points.check_points(grid[0], z, 0.0, extent.source, s.thickness)
     if z.size > planes.size:
@@ -59,28 +59,45 @@ def choose_in_space(
     search = search._replace(extent=extent._replace(band=extent.band + falling, low=low))
     plan = first_plan(search)
     search = search._replace(checks=checks._replace(places=sheet._replace(first=plan)))
-    quadrature, _ = quadrature_on_bent_contour(search, Planned(plan, misplaced.NONE, 0.0))
-    return with_unseen_bands(s, checks, quadrature)._replace(checked_planes=planes)
+    planned = Planned(plan, misplaced.NONE, 0.0)
+    if sheet.around is not None:
+        planned = with_poles(search, planned)
+        if not planned.unclear:
+            places: Any = search.checks.places
+            search = search._replace(checks=places.with_wider_look(search, planned, search.checks))
+    quadrature, _ = quadrature_on_bent_contour(search, planned)
+    return with_unseen_bands(s, search.checks, quadrature)._replace(checked_planes=planes)
 
 
-def _sheet(sources: AngleInterpolation, grid: tuple[np.ndarray, np.ndarray]) -> Sheet:
-    """Positions among the requested ones, and about the source's middle."""
+def _sheet(sources: AngleInterpolation, k0: float, grid: tuple[np.ndarray, np.ndarray]) -> Sheet:
+    """Positions among the requested ones, and about the source's middle: apart where it is far."""
     beam: Any = sources.beam
-    picked = []
+    picked, around, aside = [], [], False
     for positions, half in zip(grid, beam.half_widths(0.5), strict=True):
         order = np.sort(positions)
-        own = half * np.linspace(-1, 1, AROUND)
-        ends = order[np.unique(np.linspace(0, order.size - 1, PICKED).round().astype(int))]
-        picked.append(np.unique(np.concatenate([ends, own])))
+        picked.append(order[np.unique(np.linspace(0, order.size - 1, PICKED).round().astype(int))])
+        around.append(half * np.linspace(-1, 1, AROUND))
+        gap = max(order[0], -order[-1]) - half
+        aside |= gap > max(ASIDE * (np.ptp(order) + 2 * half), GAP / k0)
     x, y = picked
-    return Sheet(x, y, (float(np.max(np.abs(x))), float(np.max(np.abs(y)))))
+    if aside:
+        return Sheet(x, y, _far(x, y), around=(around[0], around[1]))
+    x, y = (np.unique(np.concatenate(pair)) for pair in zip(picked, around, strict=True))
+    return Sheet(x, y, _far(x, y))
+
+
+def _far(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """The largest |x| and |y|."""
+    return float(np.max(np.abs(x))), float(np.max(np.abs(y)))
 
 
 def _with_landings(sheet: Sheet, sources: AngleInterpolation, transfer: TransferFunction, z: np.ndarray) -> Sheet:
     """With the positions where beams land, as far as they lie no farther out than the requested ones."""
     assert sheet.rays is not None
     x, y = landed(sheet.rays, sources, transfer, z)
-    inside = (np.abs(x) <= sheet.far[0]) & (np.abs(y) <= sheet.far[1])
+    low = -np.array(sheet.far) if sheet.around is None else np.array([sheet.x.min(), sheet.y.min()])
+    high = np.array(sheet.far) if sheet.around is None else np.array([sheet.x.max(), sheet.y.max()])
+    inside = (x >= low[0]) & (x <= high[0]) & (y >= low[1]) & (y <= high[1])
     x, y = (np.unique(np.concatenate(pair)) for pair in ((sheet.x, x[inside]), (sheet.y, y[inside])))
     return sheet._replace(x=x, y=y)
 

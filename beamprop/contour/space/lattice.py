@@ -10,19 +10,23 @@ h_L depends on |k| alone, and many points of a lattice have the same |k|: it is 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arrays.matmul import product
 from ...sources.angles import AngleInterpolation
-from .along import Along, along
+from .along import Along, along, real_product
 
 #: Steps of the table of h_L, over pi/L, and positions from which it is interpolated by rtol: h_L is an entire function of type L, and
 #: Lagrange's polynomial through 10, 12, 14 and 16 positions errs by 2e-9, 4e-11, 1e-12 and 3e-14 (tests/test_space_pieces.py). That is over the
 #: launched |p|, which may be a hundred times the largest on a plane; a goal that is missed takes more positions at the next try.
 FINE = 9
 POSITIONS = ((1e-5, 10), (1e-7, 12), (1e-9, 14), (0.0, 16))
+
+#: Radii whose weights are formed at a time, in the cache.
+BLOCK = 2**11
 
 
 class Table(NamedTuple):
@@ -47,7 +51,7 @@ class Table(NamedTuple):
     def _spread(columns: np.ndarray, weights: np.ndarray, size: int) -> Any:
         from scipy.sparse import csr_array
 
-        rows = np.arange(len(columns) + 1) * columns.shape[1]
+        rows = np.arange(len(columns) + 1, dtype=columns.dtype) * columns.shape[1]
         return csr_array((weights.ravel(), columns.ravel(), rows), shape=(len(columns), size))
 
 
@@ -64,14 +68,25 @@ class Lattice(NamedTuple):
         float, np.ndarray
     ]  #: spectra by angle, kept for all sums on the lattice: those of arrays and pistons take longer than sums
 
+    @property
+    def by_rows(self) -> bool:
+        """Whether `rows` serves it."""
+        return True
+
     def spectra(self, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
         """S dkx dky/(2 pi)^2 of all beams of the lattice's source: (Ny, Nx) each."""
-        kx, ky = self.kx[None, :], self.ky[:, None]
-        for angle in map(float, beams.angles):
-            if angle not in self.known:
-                beam: Any = beams.at(angle)
-                self.known[angle] = self.area * beam.spectrum_at(kx, ky, k0)
-        return [self.known[float(a)] for a in beams.angles]
+        return spectra(self, k0, beams)
+
+    def strengths(self, k0: float, beams: AngleInterpolation) -> np.ndarray:
+        """|w M| of each node at the radii of the strongest plane waves of the lattice, roughly: (n,)."""
+        strongest = np.max(np.abs(self.spectra(k0, beams)), axis=0)
+        at_radii = np.bincount(self.of_point.ravel(), strongest.ravel(), len(self.table.columns) + 1)
+        by_radius = self.table.matrix.T @ at_radii[:-1]
+        return np.asarray(np.sqrt((self.kernel.real**2 + self.kernel.imag**2) @ by_radius**2))
+
+    def planes(self, h: np.ndarray) -> Iterator[np.ndarray]:
+        """h_L at the points of the lattice for each plane of h (Z, n): (Ny, Nx) each."""
+        return (values[self.of_point] for values in self.at_radii(h))
 
     def at_radii(self, h: np.ndarray) -> np.ndarray:
         """h_L of h (Z, n) at the radii, and 0: (Z, u + 1), to be taken at `of_point`."""
@@ -79,6 +94,16 @@ class Lattice(NamedTuple):
         out = np.zeros((len(h), len(self.table.columns) + 1), complex)
         out[:, :-1] = (self.table.matrix @ columns).view(complex).T
         return out
+
+
+def spectra(grid: Any, k0: float, beams: AngleInterpolation) -> list[np.ndarray]:
+    """S of all beams times the area of a grid's points: (Ny, Nx) each."""
+    kx, ky = grid.kx[None, :], grid.ky[:, None]
+    for angle in map(float, beams.angles):
+        if angle not in grid.known:
+            beam: Any = beams.at(angle)
+            grid.known[angle] = grid.area * beam.spectrum_at(kx, ky, k0)
+    return [grid.known[float(a)] for a in beams.angles]
 
 
 def multiples(low: float, high: float, window: float) -> np.ndarray:
@@ -113,17 +138,21 @@ def radii_of(
 
 def interpolation(radii: np.ndarray, step: float, positions: int) -> Table:
     """Even positions by `step`, and Lagrange's polynomials through so many nearest ones of each radius."""
-    base = np.floor(radii / step).astype(int) - positions // 2 + 1
-    differences = radii / step - base - np.arange(positions)[:, None]
-    weights = np.ones(differences.shape)
-    np.cumprod(differences[:-1], axis=0, out=weights[1:])
-    weights[:-1] *= np.cumprod(differences[:0:-1], axis=0)[::-1]
-    whole = np.arange(positions)
-    scale = [(-1) ** (positions - 1 - j) * math.factorial(j) * math.factorial(positions - 1 - j) for j in whole]
-    weights /= np.array(scale, float)[:, None]
+    base = np.floor(radii / step).astype(np.int32) - positions // 2 + 1
+    whole, weights = np.arange(positions, dtype=np.int32), np.empty((radii.size, positions))
+    scale = [
+        (-1) ** (positions - 1 - j) * math.factorial(j) * math.factorial(positions - 1 - j) for j in range(positions)
+    ]
+    for start in range(0, radii.size, BLOCK):
+        part = slice(start, start + BLOCK)
+        differences = radii[part] / step - base[part] - whole[:, None]
+        products = np.ones(differences.shape)
+        np.cumprod(differences[:-1], axis=0, out=products[1:])
+        products[:-1] *= np.cumprod(differences[:0:-1], axis=0)[::-1]
+        weights[part] = (products / np.array(scale, float)[:, None]).T
     first, last = int(base.min(initial=0)), int(base.max(initial=0))
     nodes = step * (first + np.arange(last - first + positions))
-    return Table(nodes, (base - first)[:, None] + whole, np.ascontiguousarray(weights.T))
+    return Table(nodes, (base - first)[:, None] + whole, weights)
 
 
 def positions_for(rtol: float) -> int:
@@ -132,12 +161,11 @@ def positions_for(rtol: float) -> int:
 
 
 def fields(
-    lattice: Lattice, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
+    lattice: Any, spectra: list[np.ndarray], h: np.ndarray, x: np.ndarray, y: np.ndarray, out: np.ndarray
 ) -> None:
     """p of all beams on the planes of h (Z, n), at every (y, x), into out (B, Z, Y, X): two matrix products a plane."""
     over_x, over_y = along(lattice.kx, x), along(lattice.ky, y)
-    for i, values in enumerate(lattice.at_radii(h)):
-        plane = values[lattice.of_point]
+    for i, plane in enumerate(lattice.planes(h)):
         for spectrum, into in zip(spectra, out[:, i], strict=True):
             _plane(spectrum * plane, over_x, over_y, into)
 
@@ -156,16 +184,17 @@ def rows(
 ) -> None:
     """What `fields` gives, by rows: at each y the lattice is summed over ky once for all planes."""
     over_x, few = along(lattice.kx, x), len(h) < len(lattice.kernel)
-    left = product(h, lattice.kernel) if few else lattice.kernel
+    left = np.ascontiguousarray((product(h, lattice.kernel) if few else lattice.kernel).T)
     for spectrum, beam in zip(spectra, out, strict=True):
         for j, at in enumerate(y):
-            waves = product(left, _over_ky(lattice, spectrum, float(at)))
-            summed = over_x.sum(np.ascontiguousarray(waves.T)).T
+            carried = np.ascontiguousarray(_over_ky(lattice, spectrum, float(at)).T)
+            waves = product(carried, left) if np.iscomplexobj(carried) else real_product(carried, left)
+            summed = over_x.sum(waves).T
             beam[:, j] = summed if few else product(h, summed)
 
 
 def _over_ky(lattice: Lattice, spectrum: np.ndarray, y: float) -> np.ndarray:
-    """What makes plane waves along x of a table of h_L, as table @ it: (t, Nx)."""
+    """What makes plane waves along x of a table of h_L, as table @ it: (t, Nx), real where waves of +-ky add to that."""
     waves, columns = spectrum * np.exp(1j * lattice.ky * y)[:, None], lattice.kx.size
     distinct, at = np.unique(np.abs(lattice.ky), return_inverse=True)
     folded, of_point = np.zeros((distinct.size, columns), complex), np.empty((distinct.size, columns), int)
@@ -174,5 +203,8 @@ def _over_ky(lattice: Lattice, spectrum: np.ndarray, y: float) -> np.ndarray:
         folded[at[side]] += waves[side]
     inside = np.flatnonzero(of_point < len(lattice.table.columns))
     carried = lattice.table.by_columns(of_point.ravel()[inside], inside % columns, columns)
-    summed = carried @ folded.ravel()[inside].view(float).reshape(-1, 2)
+    of_table = folded.ravel()[inside]
+    if not of_table.imag.any():
+        return np.asarray(carried @ of_table.real).reshape(-1, columns)
+    summed = carried @ of_table.view(float).reshape(-1, 2)
     return np.ascontiguousarray(summed).view(complex).reshape(-1, columns)

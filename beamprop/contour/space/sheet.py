@@ -17,6 +17,8 @@ from ..residues import add_residues
 from ..search import Planned, Search
 from ..survey import Rays
 from . import lattice, radial
+from .differences import MOST_POINTS as MOST_DIFFERENCES
+from .differences import Axis, axis, differences
 from .lattice import Lattice
 
 #: Tolerance over rtol with which source and spectrum are cut off, and that of the second contour: both show in their difference. A beam
@@ -29,6 +31,10 @@ FARTHER, WIDER, SOFTER = 1.03, 1.06, 1.25
 INSIDE = 0.3
 #: The most points of a lattice: 8 or 16 bytes each for six arrays.
 MOST_POINTS = 4_000_000
+#: A lattice of so many points gives way to a grid of differences where positions lie aside.
+WORTH_IT = 100_000
+#: Positions lie aside where their gap to the source is so many times as wide as both, and so many radians: the scale is looked for apart then.
+ASIDE, GAP = 2.0, 200.0
 
 
 def fall(rtol: float) -> float:
@@ -70,6 +76,11 @@ class Reached(NamedTuple):
     high: float  #: middle of the filter by which it ends before the spectra do, and its width, infinite without one
     softness: float
 
+    @property
+    def points(self) -> float:
+        """Of the lattice."""
+        return float(np.prod(np.ptp(self.spectrum.box, axis=1) * self.windows / (2 * math.pi)))
+
 
 def margin_of(length: float, arriving: float, end: float, u: float) -> float:
     """How much farther out than `length` G is cut off, for a filter of the lattice beyond |k| = `arriving`; 0 where there is none.
@@ -91,6 +102,9 @@ class Sheet(NamedTuple):
     far: tuple[float, float]  #: the largest |x| and |y|, also of requested positions
     first: BentPlan | None = None  #: the first plan, over which later ones grow
     rays: Rays | None = None
+    around: tuple[np.ndarray, np.ndarray] | None = (
+        None  #: positions x and y about the source, where those of the grid lie aside
+    )
 
     @property
     def on_a_line(self) -> bool:
@@ -124,7 +138,23 @@ class Sheet(NamedTuple):
         contour = add_residues(search.slab, bent, [planned.poles], search.extent, second)
         filtered = radial.passed(contour.k, low, high, width)
         contour = contour._replace(weight=2 * math.pi * contour.k * filtered * contour.weight)
+        axes = self._grid(search, planned.plan, reached, second)
+        if axes is not None:
+            return contour._replace(lattice=differences(contour.k, contour.weight, axes, plan.band))
         return contour._replace(lattice=_lattice(contour, reached, self.goal(search.rtol, planned.plan)))
+
+    def _grid(self, search: Search, plan: BentPlan, reached: Reached, second: bool) -> tuple[Axis, Axis] | None:
+        """The grid of differences between positions and source, where positions lie aside and the lattice is large."""
+        if self.around is None or reached.points < WORTH_IT or not np.isfinite(reached.spectrum.box).all():
+            return None
+        tolerance = self.goal(search.rtol, plan) * (SECOND_CUT if second else CUT)
+        beam: Any = search.checks.sources.beam
+        u, band = fall(search.rtol) * (SOFTER if second else 1.0), plan.second_plan().band if second else plan.band
+        x, y = (
+            axis(float(v.min()) - half, float(v.max()) + half, ends, band, u)
+            for v, half, ends in zip((self.x, self.y), beam.half_widths(tolerance), reached.spectrum.box, strict=True)
+        )
+        return (x, y) if x.points * y.points <= MOST_DIFFERENCES else None
 
     def _reached(self, search: Search, plan: BentPlan, second: bool) -> Reached:
         """Where the spectra lie, and lengths, of a plan: wider with its band and its window than those of the first plan."""
@@ -143,8 +173,7 @@ class Sheet(NamedTuple):
     def too_large(self, search: Search, plan: BentPlan) -> bool:
         """Whether the second contour's lattice has too many points."""
         reached = self._reached(search, plan, True)
-        points = float(np.prod(np.ptp(reached.spectrum.box, axis=1) * reached.windows / (2 * math.pi)))
-        return not points <= MOST_POINTS
+        return not reached.points <= MOST_POINTS and self._grid(search, plan, reached, True) is None
 
     def amplitudes(self, k0: float, sources: AngleInterpolation, contour: Contour) -> Amplitudes:
         """Bounds of what each node adds to |p|: |w| times the mean of |S| over directions, once; (B, n) each."""
@@ -181,11 +210,9 @@ class Sheet(NamedTuple):
         return peak_outside.with_agreed(checks, chosen, peaks)
 
     def _wide(self, search: Search, checks: Checks) -> Sheet:
-        """Positions far around, and where rays land."""
-        around = (
-            np.linspace(-1, 1, AROUND)
-            * (peak_outside.WIDER * np.array(self.far) + max(search.extent.path, 0.0))[:, None]
-        )
+        """Positions far around, or about the source, and where rays land."""
+        reach = peak_outside.WIDER * np.array(self.far) + max(search.extent.path, 0.0)
+        around = tuple(np.linspace(-1, 1, AROUND) * reach[:, None]) if self.around is None else self.around
         x, y = around if self.rays is None else landed(self.rays, checks.sources, checks.transfer, checks.z)
         x, y = (np.unique(np.concatenate([a, b])) for a, b in zip(around, (x, y), strict=True))
         return Sheet(x, y, (float(np.abs(x).max()), float(np.abs(y).max())))
