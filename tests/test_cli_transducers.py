@@ -76,7 +76,10 @@ def test_pictures(axes, tmp_path):
         (["--piston", "1cm", "--fwhm", "3cm"], "--fwhm: expected to be left out beside --piston, got 0.03"),
         (["--piston", "1cm", "--slits", "1mm,2mm"], "--piston: expected to be left out beside --slits"),
         (["--piston", "-1cm"], "--piston: expected a finite number above zero"),
-        (["--piston", "1cm", "--angle", "10"], "--angle: expected 0 with a Piston, which is not steered, got 10"),
+        (
+            ["--piston", "1cm", "--angle", "10"],
+            "--angle: expected 0 with a Piston, which is not steered (an Array of them is; tilted transducers are not available), got 10",
+        ),
         (["--bowl", "1cm"], "--bowl: expected radius_of_curvature,aperture such as 64mm,64mm, got '1cm'"),
         (["--bowl", "1cm,3cm"], "--bowl: expected at most twice the radius_of_curvature, 0.02, got 0.03"),
         (["--fwhm", "1cm,2cm,3cm"], "--fwhm: expected a width, or two widths along x and y"),

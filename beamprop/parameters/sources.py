@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from .tables import Parameter, apart, named, read
@@ -177,7 +176,7 @@ def _of_file(kind: str, values: Mapping[str, Any]) -> Any:
         with _from_file(kind, "a text file", path):
             return Profile.from_file(path, values["z0"])
     with _from_file(kind, "a .mat, .npz or .nc file", path):
-        return replace(SourcePlane.from_file(path, values["z0"]), azimuth=values["azimuth"])
+        return SourcePlane.from_file(path, values["z0"], azimuth=values["azimuth"])
 
 
 def _array(element: Any, path: Any) -> Any:
