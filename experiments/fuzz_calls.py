@@ -124,6 +124,14 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Any], dict[str, Any]]] = {
         {"positions": lambda r: r.normal(size=(3, 2)), "element": lambda r: bp.Piston(0.01)},
         {"weights": lambda r: [1, 2j, 3], "angle": real},
     ),
+    "SourceSum": (
+        bp.SourceSum,
+        {
+            "sources": lambda r: (bp.Piston(0.01), bp.GaussianBeam(magnitude(r))),
+            "weights": lambda r: (1, r.normal() * 1j),
+        },
+        {},
+    ),
     "scattering": (bp.scattering, {"slab": draw_slab, "frequency": FREQUENCY, "kx_over_k0": draw_axis(-3, 3)}, {}),
     "scattering, angle": (bp.scattering, {"slab": draw_slab, "frequency": FREQUENCY, "angle": ANGLE}, {}),
     "bloch": (

@@ -118,7 +118,7 @@ def test_means_over_a_cell_with_solids():
     assert abs(bp.field(slab, beam, 3e5, x, around).p.values.mean(axis=0) - mean).max() < 1e-5 * abs(mean).max()
     with pytest.warns(bp.HintWarning, match="steps of 0.0008 m skip through cells of 0.003 m"):
         bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22))
-    with pytest.warns(bp.HintWarning, match=r"take z=bp.faces\(slab, ...\)$"):  # there are no means in three dimensions
+    with pytest.warns(bp.HintWarning, match=r"take z=bp.faces\(slab, ...\), or average='cell'$"):
         bp.field(slab, beam, 3e5, x, 0.8e-3 * np.arange(22), y=0.0, rtol=1e-4)
 
 

@@ -108,7 +108,7 @@ def closed(tmp_path, monkeypatch):
 @pytest.mark.parametrize("ending", [".nc", ".zarr"])
 def test_save_field_finds_wrong_paths_before_the_work(tmp_path, monkeypatch, ending):
     """Not even the question is set up."""
-    monkeypatch.setattr("beamprop.api.save_field.checked_question", lambda *a: pytest.fail("work was begun"))
+    monkeypatch.setattr("beamprop.api.save_field.question_at", lambda *a: pytest.fail("work was begun"))
     for path, said in wrong_paths(tmp_path, ending).items():
         with pytest.raises(ValueError, match=rf"^path: .*{said}"):
             bp.save_field(path, bp.Slab(bp.lmmd_cell(), 5), bp.GaussianBeam(0.1), 2500.0, [0.0, 0.1], [0.0, 0.1])

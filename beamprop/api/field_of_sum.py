@@ -59,7 +59,7 @@ def field_of_sum(
     checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     asked = [question_in_space(slab, source, frequency, angle, rtol, places) for source in beam.sources]
     questions, labels = [question for question, _ in asked], asked[0][1]
-    warn_of_stripes(slab, questions[0].z, questions[0].frequency)
+    warn_of_stripes(slab, questions[0].z, questions[0].frequency, averages=False)
     azimuth = beam.azimuth if places[3] is None else labels.azimuth
     angles = labels.axes["angle"] if angle is not None else np.asarray(beam.angle)
     labels = labels._replace(beam=beam, azimuth=azimuth, axes=labels.axes | {"angle": angles})

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.integrate import simpson
 
 from ..contour import choose
 from ..contour.error import SHIFT, ErrorBudget, uniform_budget
@@ -148,6 +147,8 @@ def _moments(x: np.ndarray, size: np.ndarray, whole: bool) -> tuple[float, float
 
     That is where |p| is connected to the peak above the tail, or the `whole` window if requested or if the tail is cut off.
     """
+    from scipy.integrate import simpson  # after the question: it takes long to import
+
     top = int(np.argmax(size))
     below = np.flatnonzero(size < TAIL * size[top])
     left, right = below[below < top], below[below > top]

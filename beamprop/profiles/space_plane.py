@@ -81,9 +81,8 @@ def plane_of(s: SampledSlab, source: Any, transfer: TransferFunction, z: float, 
     quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
     contour = quadrature.contour
     lattice = contour.lattice
-    waves = np.zeros((lattice.ky.size, lattice.kx.size), complex)
-    waves.ravel()[lattice.inside] = lattice.on_lattice(transfer(contour.k, planes))[0]
-    return Plane(lattice.kx, lattice.ky, waves * lattice.spectra(s.k0, beams)[0], quadrature.budget)
+    h = lattice.at_radii(transfer(contour.k, planes))[0][lattice.of_point]
+    return Plane(lattice.kx, lattice.ky, h * lattice.spectra(s.k0, beams)[0], quadrature.budget)
 
 
 class Sampled(NamedTuple):

@@ -13,11 +13,11 @@ import numpy as np
 import beamprop as bp
 
 from ..case import Case, SpaceCase
-from ..cases.in_space import SOLID
 from . import quadrature
 from .quadrature import EPS, Setting, Truth
 from .radial import Circular, Transducer
 from .solid import SolidMedium
+from .solid_medium import has_solid
 
 #: The most products of nodes, directions and positions that a quadrature may take: some 10 s.
 MOST_TERMS = 3e8
@@ -75,7 +75,7 @@ def source_of(case: SpaceCase, k0: float) -> Any:
 
 def _setting(case: SpaceCase, source: Any, x: np.ndarray) -> Setting:
     """A setting in two dimensions whose contours serve: the same distances, and solids with what they answer."""
-    solid = case.kind == SOLID
+    solid = has_solid(case.slab)
     slab = (
         bp.Slab.uniform(bp.AIR, case.slab.thickness, before=case.slab.before, after=case.slab.after)
         if solid

@@ -288,5 +288,10 @@ class SolidMedium(Medium):
 
 def medium_of(slab: bp.Slab, frequency: float) -> Medium:
     """A slab at one frequency, with solids or without."""
+    return (SolidMedium if has_solid(slab) else Medium)(slab, frequency)
+
+
+def has_solid(slab: bp.Slab) -> bool:
+    """Whether a layer, or what is behind, is a solid."""
     media = [slab.after, *(layer.fluid for cell, _ in slab.segments for layer in cell.layers)]
-    return (SolidMedium if any(isinstance(m, bp.Solid) for m in media) else Medium)(slab, frequency)
+    return any(isinstance(m, bp.Solid) for m in media)
