@@ -52,6 +52,42 @@ def test_it_asks_what_python_asks_and_so_does_its_study(name):
     assert bp.load("a.nc").p.identical(bp.load("a.nc").p.copy(data=known.p.values))
 
 
+@pytest.mark.parametrize("question", ["beam_width", "beam_measures"])
+@pytest.mark.parametrize("name", ["ellipse", "piston"])
+def test_widths_are_those_of_python(name, question):
+    """As numbers, and as a text that has every axis."""
+    options, source = SOURCES[name]
+    known = getattr(bp, question)(PLATE, source, 0.1e6, rtol=1e-6)
+    held = json.loads(good(question, *AROUND, "--frequency", "0.1MHz", "--z0=-3cm", *options, "--json").stdout)[
+        "data_vars"
+    ]
+    for variable in known:
+        np.testing.assert_array_equal(from_json(held[variable]["data"]), known[variable].values)
+    said = good(question, *AROUND, "--frequency", "0.1MHz", "--z0=-3cm", *options).stdout
+    widths = known.fwhm_out * 100 if question == "beam_width" else known.fwhm.sel(side="transmitted")
+    assert all(f"{float(v):.6g}"[:5] in said for v in widths)
+
+
+def test_a_lattice_and_its_study():
+    """Two periods, as text and in a study."""
+    options = ["--fwhm", "8mm", "--z0=-3cm", "--boundary", "periodic", "--period", "5cm,6cm"]
+    good("field", *AROUND, *AT, *options, "--output", "a.nc", "--save-study", "study.toml")
+    at = {"x": np.linspace(-0.01, 0.01, 5), "z": 0.02, "y": [0.0, 0.005], "rtol": 1e-6}
+    known = bp.field(PLATE, SOURCES["circle"][1], 0.5e6, **at, boundary="periodic", period=(0.05, 0.06))
+    first = bp.load("a.nc")
+    np.testing.assert_array_equal(first.p.values, known.p.values)
+    good("run", "study.toml")
+    assert bp.load("a.nc").p.identical(first.p)
+
+
+def test_volumes_written_by_blocks_are_compared():
+    volume = ["--fwhm", "8mm", "--z0=-3cm", "--x=-1cm:1cm:9", "--y=-1cm:1cm:7", "--z", "1cm:2cm:4"]
+    good("field", *AROUND, *volume, "--output", "whole.nc")
+    good("field", *AROUND, *volume, "--output", "blocks.nc", "--memory", "1")
+    compared = json.loads(good("compare", "whole.nc", "blocks.nc", "--json").stdout)["data_vars"]
+    assert compared["relative_l2"]["data"] < 1e-12
+
+
 def test_without_y_it_is_the_cut_through_the_middle():
     ds = json.loads(
         good("field", *AROUND, "--piston", "1cm", "--y0", "2mm", "--z0=-3cm", "--x", "0", "--z", "2cm", "--json").stdout
@@ -88,6 +124,11 @@ def test_pictures(axes, tmp_path):
         (["--source-plane", "array.csv"], "--source-plane: expected a file .mat, .npz, .nc, got 'array.csv'"),
         (["--piston", "1cm", "--plot", "a.png"], "--plot: expected axes for two of --x, --y and --z, got one value"),
         (["--piston", "1cm", "--variables", "power_through"], "--variables: expected"),
+        (
+            ["--boundary", "periodic", "--period", "1cm"],
+            "--period: expected two lengths (Lx, Ly) [m] where y is given, got 0.01",
+        ),
+        (["--period", "1cm,2cm,3cm"], "--period: expected a length, or two lengths along x and y such as 30mm,15mm"),
     ],
 )
 def test_wrong_use(options, said, tmp_path):

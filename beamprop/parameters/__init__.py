@@ -35,6 +35,7 @@ from .scale import Design as Design
 from .scale import design as design
 from .sources import BEAM as BEAM
 from .sources import beam as beam
+from .sources import lengths as lengths
 from .sources import widths as widths
 from .tables import Parameter as Parameter
 from .tables import known

@@ -29,13 +29,22 @@ def _slits(value: Any, name: str) -> tuple[float, float, int]:
 
 def widths(value: Any, name: str) -> float | tuple[float, float]:
     """A width [m], or those along x and y, as text with a comma between or as a list."""
+    return _along_x_and_y(value, name, "width")
+
+
+def lengths(value: Any, name: str) -> float | tuple[float, float]:
+    """A length [m], or those along x and y, as text with a comma between or as a list."""
+    return _along_x_and_y(value, name, "length")
+
+
+def _along_x_and_y(value: Any, name: str, what: str) -> float | tuple[float, float]:
     from .. import validate
 
     parts = _parts(value)
     if not isinstance(parts, list | tuple) or len(parts) == 1:
         return length(value, name)
     if len(parts) != 2:
-        raise validate.refuse(name, "a width, or two widths along x and y such as 30mm,15mm", value)
+        raise validate.refuse(name, f"a {what}, or two {what}s along x and y such as 30mm,15mm", value)
     return length(parts[0], name), length(parts[1], name)
 
 

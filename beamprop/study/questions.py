@@ -57,8 +57,10 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         "boundary": Parameter(
             "open", parameters.as_it_is, "One beam, or a periodic array.", words=("open", "periodic")
         ),
-        "period": Parameter(None, parameters.length, "Of the periodic array [m]."),
-        "variables": Parameter("p", _names, "p, v_x, v_z, intensity, power_through."),
+        "period": Parameter(
+            None, parameters.lengths, "Of the periodic array [m]; with y two, along x and y: 30mm,15mm."
+        ),
+        "variables": Parameter("p", _names, "p, v_x, v_z, intensity, power_through; with y v_y too."),
         "average": Parameter(None, parameters.as_it_is, "Mean over a cell about each plane.", words=("cell",)),
     },
     "beam_width": _BEAM
