@@ -162,3 +162,37 @@ def test_the_explorer_refuses_what_it_cannot_show():
     good("field", *AROUND, *AT, "--piston", "1cm", "--z0=-3cm", "--save-study", "study.toml")
     with pytest.raises(ValueError, match="beam: expected a source of two dimensions on the page, got one of three"):
         board(read("study.toml"))
+
+
+def test_a_solid_behind_by_a_table(tmp_path):
+    """As by its name; in front there is none."""
+    text = '[question]\nname = "scattering"\nfrequency = "1MHz"\nangle = "0,10,20"\n[slab]\nlayer = ["acrylic 2mm"]\nbackground = "water"\n'
+    solid = "{density = 7800, sound_speed = 5900, shear_speed = 3200}"
+    (tmp_path / "a.toml").write_text(f"{text}after = {solid}\n[output]\nfile = 'a.nc'\n")
+    good("run", "a.toml")
+    slab = bp.Slab([bp.Layer(bp.material("acrylic"), 0.002)], before=WATER, after=bp.Solid(7800, 5900, 3200))
+    np.testing.assert_array_equal(bp.load("a.nc").r.values, bp.scattering(slab, 1e6, angle=[0, 10, 20]).r.values)
+    (tmp_path / "b.toml").write_text(f'{text}after = "solid steel"\n')
+    good("check", "b.toml")
+    (tmp_path / "c.toml").write_text(text.replace('"water"', solid))
+    result = run("check", "c.toml")
+    assert result.exit_code == 2
+    assert "slab.background.shear_speed: expected a name that slab.background has" in result.stderr
+
+
+def test_a_sweep_over_azimuth_and_place(tmp_path):
+    """A circular beam's widths have their two axes at every point, at azimuth and y0 of 0 too."""
+    (tmp_path / "a.toml").write_text(
+        '[question]\nname = "beam_width"\nfrequency = "0.1MHz"\nangle = 10\nrtol = 1e-6\n[slab]\nlayer = ["acrylic 6.5mm"]\n'
+        'background = "water"\n[beam]\nfwhm = "30mm"\nz0 = "-3cm"\n[sweep]\n"beam.azimuth" = [0, 20]\n"beam.y0" = ["0", "5mm"]\n'
+        '[output]\nfile = "a.nc"\n'
+    )
+    good("run", "a.toml")
+    swept = bp.load("a.nc")
+    for azimuth in (0.0, 20.0):
+        for y0 in (0.0, 0.005):
+            beam = bp.GaussianBeam(0.03, y0=y0, z0=-0.03)
+            known = bp.beam_width(PLATE, beam, 0.1e6, angle=10, rtol=1e-6, azimuth=azimuth)
+            at = swept.sel(azimuth=azimuth, y0=y0)
+            np.testing.assert_allclose(at.fwhm_out.values, known.fwhm_out.values, rtol=1e-9)
+            np.testing.assert_allclose(at.centroid_out.values, known.centroid_out.values, rtol=1e-7)

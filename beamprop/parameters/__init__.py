@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .media import BACKGROUND as BACKGROUND
+from .media import BEHIND as BEHIND
 from .media import CELL as CELL
 from .media import FLUID as FLUID
 from .media import LAYER as LAYER
