@@ -19,6 +19,7 @@ POSITIONS = np.array([[0.0, 0.0], [0.01, 0.005]])
 SOURCES = {
     "piston": (["--piston", "1cm"], bp.Piston(0.01, z0=-0.03)),
     "soft": (["--piston", "1cm", "--baffle", "soft", "--x0", "2mm"], bp.Piston(0.01, "soft", x0=0.002, z0=-0.03)),
+    "loud": (["--piston", "1cm", "--pressure", "60e3"], bp.Piston(0.01, pressure=60e3, z0=-0.03)),
     "bowl": (["--bowl", "64mm,30mm", "--y0", "1mm"], bp.Bowl(0.064, 0.03, y0=0.001, z0=-0.03)),
     "ellipse": (
         ["--fwhm", "10mm,6mm", "--azimuth", "30", "--angle", "10"],
@@ -26,6 +27,10 @@ SOURCES = {
     ),
     "circle": (["--fwhm", "8mm"], bp.GaussianBeam(0.008, z0=-0.03)),
     "plane": (["--source-plane", "hologram.mat"], bp.SourcePlane(GRID, GRID, HOLOGRAM, -0.03)),
+    "turned": (
+        ["--source-plane", "hologram.mat", "--conjugate"],
+        bp.SourcePlane(GRID, GRID, HOLOGRAM.conj(), -0.03),
+    ),
     "array": (["--array", "array.csv", "--piston", "3mm"], bp.Array(POSITIONS, bp.Piston(0.003, z0=-0.03), [1, 0.5j])),
 }
 
@@ -116,6 +121,10 @@ def test_pictures(axes, tmp_path):
             ["--piston", "1cm", "--angle", "10"],
             "--angle: expected 0 with a Piston, which is not steered (an Array of them is; tilted transducers are not available), got 10",
         ),
+        (["--pressure", "2"], "--pressure: expected to be left out without"),
+        (["--conjugate"], "--conjugate: expected to be left out without"),
+        (["--piston", "1cm", "--conjugate"], "--conjugate: expected to be left out beside --piston"),
+        (["--piston", "1cm", "--pressure", "0"], "--pressure: expected a finite number other than 0, got 0"),
         (["--bowl", "1cm"], "--bowl: expected radius_of_curvature,aperture such as 64mm,64mm, got '1cm'"),
         (["--bowl", "1cm,3cm"], "--bowl: expected at most twice the radius_of_curvature, 0.02, got 0.03"),
         (["--fwhm", "1cm,2cm,3cm"], "--fwhm: expected a width, or two widths along x and y"),
