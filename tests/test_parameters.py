@@ -84,7 +84,19 @@ def test_every_key_of_a_beam():
     """And no angle, which is an axis."""
     table = {"fwhm": "0.2", "x0": 0.1, "z0": "-0.3", "width_of": "intensity", "form": "rotated"}
     assert parameters.beam(table) == bp.GaussianBeam(0.2, 0.0, 0.1, -0.3, "intensity", "rotated")
-    elsewhere = {"slits", "profile", "y0", "azimuth", "piston", "baffle", "bowl", "source_plane", "array"}
+    elsewhere = {
+        "slits",
+        "profile",
+        "y0",
+        "azimuth",
+        "piston",
+        "baffle",
+        "bowl",
+        "source_plane",
+        "array",
+        "pressure",
+        "conjugate",
+    }
     assert set(table) | elsewhere == set(parameters.BEAM)
 
 

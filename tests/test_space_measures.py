@@ -290,3 +290,16 @@ def test_refusals_name_the_argument(changes, message):
     given = {"slab": LOSSY, "beam": ELLIPSE, "frequency": FREQUENCY, "azimuth": 0.0} | changes
     with pytest.raises(ValueError, match=f"^{message}"):
         bp.beam_measures(**given)
+
+
+@pytest.mark.parametrize("question", [bp.beam_width, bp.beam_measures])
+def test_both_refuse_in_their_own_words(question):
+    """Not in those of a field, whose y and z nobody gave."""
+    backward = bp.Slab(bp.lmmd_cell(), 5, after=bp.Fluid(-1.2 + 0.001j, -1.4e5 - 1j))
+    for slab, beam, message in (
+        (LOSSY, bp.Piston(0.05), "beam: expected a sharp edge in front of the near face"),
+        (backward, ELLIPSE, "after: expected a half-space that carries forward waves"),
+        (bp.lmmd_emt_slab(LOSSY), ELLIPSE, "density_x: expected none, or density itself, in three dimensions"),
+    ):
+        with pytest.raises(ValueError, match=f"^{message}"):
+            question(slab, beam, FREQUENCY)

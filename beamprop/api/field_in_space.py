@@ -119,5 +119,5 @@ def refuse_directions(slab: Slab, frequency: np.ndarray) -> None:
         anisotropic = isinstance(fluid, Fluid) and fluid.density_x is not None
         if anisotropic and np.any(np.not_equal(*fluid.at(frequency)[:2])):
             raise ValueError(
-                f"density_x: expected none, or density itself, where y is given, got {fluid!r}: a density along x says nothing of that along y"
+                f"density_x: expected none, or density itself, in three dimensions, got {fluid!r}: a density along x says nothing of that along y"
             )

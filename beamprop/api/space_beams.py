@@ -74,6 +74,8 @@ def space_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float,
     source.in_space(azimuth)  # refuses the form that is not known there
     for value in beams.flat[1]:
         source.at_angle(float(value))
+    if source.z0 == 0 and has_edge(source.in_space(azimuth)):
+        raise validate.refuse("beam", "a sharp edge in front of the near face, whose z is 0", beam)
     refuse_directions(slab, beams.flat[0])
     checks.warn_if_not_ended(beam, np.max(checks.k0(slab, beams.flat[0])), -beam.z0, beams.rtol)
     return SpaceBeams(slab, beam, beams, azimuth, np.array([source.x0, source.y0]))
@@ -122,8 +124,6 @@ def measures_in_space(question: SpaceBeams, window: float | None, progress: Prog
     worst, of_power, corners = uniform_budget(1, 0.0), PowerError(), 0.0
     for i, j in watched(progress, list(itertools.product(*map(range, shape))), "beams"):
         s, source = sample(question.slab, float(flat[i])), question.at_angle(float(angles[j]))
-        if has_edge(source) and source.z0 == 0:
-            raise validate.refuse("beam", "a sharp edge in front of the near face, whose z is 0", question.beam)
         both = space_measures.reflected_and_transmitted(s, source, rtol, window)
         for side, measured in enumerate(both):
             worst, corners = worst.worse(measured.budget), max(corners, measured.area.change)

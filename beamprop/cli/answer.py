@@ -151,8 +151,11 @@ def _spread(size: int, most: int) -> list[int]:
 
 
 def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0) -> str:
-    """Variables of a dataset as text: along an axis a column each, on two axes a table each."""
+    """Variables of a dataset as text: along an axis a column each, on two axes a table each; apart by what they depend on."""
     ds = ds[list(names)] * scale
+    kinds = list(dict.fromkeys(ds[n].dims for n in names))
+    if len(kinds) > 1:
+        return "\n\n".join(table(ds, tuple(n for n in names if ds[n].dims == kind)) for kind in kinds)
     dims = list(ds[names[0]].dims)
     if not dims:
         return "\n".join(f"{n:22s} {float(ds[n]):.6g}" for n in names)

@@ -78,6 +78,7 @@ REAL = Checked(parameters.real, "NUMBER")
 POSITIVE = Checked(_positive, "NUMBER")
 AT_LEAST_ZERO = Checked(_at_least_zero, "NUMBER")
 LENGTH = Checked(parameters.length, "LENGTH")
+LENGTHS = Checked(parameters.lengths, "LENGTH")
 COUNT = Checked(parameters.count, "COUNT")
 NAMES = Checked(lambda value, name: [part.strip() for part in value.split(",")], "NAMES")
 

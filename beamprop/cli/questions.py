@@ -17,6 +17,7 @@ from .options import (
     BEAM,
     CELL,
     LENGTH,
+    LENGTHS,
     NAMES,
     POSITIVE,
     REAL,
@@ -122,12 +123,12 @@ def beam_measures(**o: Any) -> None:
 @option(
     "--boundary", kind=words("open", "periodic"), text="One beam, or a periodic array.", default="open", shown="open"
 )
-@option("--period", kind=LENGTH, text="Of the periodic array [m].")
+@option("--period", kind=LENGTHS, text="Of the periodic array [m]; with y two, along x and y: 30mm,15mm.")
 @quantity("field")
 @option(
     "--variables",
     kind=NAMES,
-    text="Of the dataset, with commas between: p, v_x, v_z, u_x, u_z, s_xz, intensity, power_through.",
+    text="Of the dataset, with commas between: p, v_x, v_z, u_x, u_z, s_xz, intensity, power_through; with y v_y, u_y and s_yz too.",
     shown="p",
 )
 @option(

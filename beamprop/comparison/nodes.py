@@ -72,7 +72,7 @@ def _record(ds: xr.Dataset, mesh: str) -> dict[str, Any]:
     record = datasets.provenance(ds) if "provenance" in ds.attrs else {}
     made = record.get("question", "no known origin")
     if made != "field" or not set(record) >= NEEDED or not isinstance(record["beam"], Beam):
-        made = "a source of the user's own" if made == "field" else made
+        made = "a source of the user's own or of more samples than a record keeps" if made == "field" else made
         raise ValueError(
             f"{mesh}: expected p on (z, x), or for scattered nodes a field of beamprop beside it, which can be evaluated "
             f"there, got one of {made}: {HOW}"

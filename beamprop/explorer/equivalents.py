@@ -147,7 +147,8 @@ def _beam(description: Description) -> str:
     if isinstance(made, Slits):
         return f"beam = bp.Slits({made.width!r}, {made.separation!r}, {made.count}, {z0})"
     if isinstance(made, Profile):
-        return f"beam = bp.Profile.from_file({table['profile']!r}, {z0})"
+        turned = ", conjugate=True" if table.get("conjugate") else ""
+        return f"beam = bp.Profile.from_file({table['profile']!r}, {z0}{turned})"
     more = [f"{key}={getattr(made, key)!r}" for key in ("x0", "form", "width_of") if key in table]
     return _call("beam = bp.GaussianBeam", [repr(made.fwhm), *more, z0])
 

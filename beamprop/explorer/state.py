@@ -118,7 +118,7 @@ def _beam(beam: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     if source == "slits":
         kept["slits"] = [values[f"beam.slits.{key}"] for key in ("width", "separation", "count")]
     elif source == "profile":
-        kept["profile"] = beam["profile"]
+        kept |= {key: beam[key] for key in ("profile", "conjugate") if key in beam}
     return kept | {"z0": values["beam.z0"]}
 
 

@@ -10,6 +10,7 @@ import base64
 import contextlib
 import dataclasses
 import functools
+import hashlib
 import json
 import math
 import zlib
@@ -69,6 +70,9 @@ _RECORDS: dict[str, type] = {
 }
 
 _KINDS = frozenset(_RECORDS.values())
+_SOURCES = frozenset({Array, Bowl, GaussianBeam, Piston, Profile, Slits, SourcePlane, SourceSum})
+#: Of an array of a source that has more numbers a checksum is recorded in their place: a hologram of 401 x 401 samples is 10 MB of text.
+MOST_NUMBERS = 4096
 #: Of a source of the user's own its class and so much of its text are recorded [characters].
 MOST_TEXT = 1000
 #: All records of a block of a study [bytes].
@@ -87,6 +91,8 @@ def describe(value: Any, frequency: np.ndarray | None) -> Any:
     A property that is some user's function of frequency is recorded by its values at `frequency` [Hz].
     """
     kind: Any = type(value)
+    if kind in _SOURCES:
+        return _record_of_source(value)
     if kind in _KINDS:
         fields = {name: describe(getattr(value, name), frequency) for name in _field_names(kind)}
         return {"type": kind.__name__, **fields}
@@ -108,6 +114,34 @@ def describe(value: Any, frequency: np.ndarray | None) -> Any:
     if isinstance(value, Beam):  # a source of the user's own, which no file can bring back
         return {"source": f"{kind.__module__}.{kind.__qualname__}", "text": repr(value)[:MOST_TEXT]}
     raise TypeError(f"no record for {type(value).__name__}")
+
+
+def _record_of_source(source: Any) -> dict[str, Any]:
+    """All of a source, under ``type``, or under ``source`` what remains to be told of it where a part has too many numbers or is not known."""
+    kind: Any = type(source)
+    values = {name: getattr(source, name) for name in _field_names(kind)}
+    if any(isinstance(v, np.ndarray) and v.size > MOST_NUMBERS for v in values.values()):
+        records = {k: _summary(v) if isinstance(v, np.ndarray) else describe(v, None) for k, v in values.items()}
+        file = getattr(source, "file", "")
+        return {"source": kind.__name__, **records} | ({"file": file} if file else {})
+    records = {name: describe(value, None) for name, value in values.items()}
+    parts = [part for record in records.values() for part in (record if isinstance(record, list) else [record])]
+    whole = not any(isinstance(part, dict) and "source" in part for part in parts)
+    return {"type" if whole else "source": kind.__name__, **records}
+
+
+def _summary(values: np.ndarray) -> dict[str, Any]:
+    """Shape and checksum of an array's bytes, row by row; of positions the ends and the step too, for samples are even."""
+    exact = np.ascontiguousarray(values + 0.0)  # -0.0, which 0.0 is equal to, becomes it
+    record: dict[str, Any] = {
+        "shape": list(values.shape),
+        "dtype": str(values.dtype),
+        "sha256": hashlib.sha256(exact.tobytes()).hexdigest(),
+    }
+    if values.ndim == 1 and values.dtype.kind == "f":
+        first, last = float(values[0]), float(values[-1])
+        record |= {"from": first, "to": last, "step": (last - first) / (values.size - 1)}
+    return record
 
 
 @functools.cache
@@ -196,7 +230,8 @@ def labelled(variables: dict[str, Any], coords: dict[str, Any], attrs: dict[str,
 def provenance(ds: xr.Dataset) -> dict[str, Any]:
     """What a dataset records of its making, with slab, cell and beam rebuilt as objects.
 
-    Of a source that is not one of the package's own its class and its text are recorded, as a dict. Of a point of a `sweep` it is what
+    Of a source that is not one of the package's own its class and its text are recorded, as a dict; of one with more than 4096 samples
+    or positions the class, their shape, SHA-256, ends and steps, and the name of the file that it was read from. Of a point of a `sweep` it is what
     the question recorded there; of points that differ in it, the study.
 
     Examples

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .media import BACKGROUND as BACKGROUND
+from .media import BEHIND as BEHIND
 from .media import CELL as CELL
 from .media import FLUID as FLUID
 from .media import LAYER as LAYER
@@ -35,6 +36,7 @@ from .scale import Design as Design
 from .scale import design as design
 from .sources import BEAM as BEAM
 from .sources import beam as beam
+from .sources import lengths as lengths
 from .sources import widths as widths
 from .tables import Parameter as Parameter
 from .tables import known

@@ -98,6 +98,8 @@ LAYER: dict[str, Parameter] = {
 FLUID: dict[str, Parameter] = {
     name: p for name, p in LAYER.items() if name not in ("areal_density", "thickness", "shear_speed")
 }
+#: What that behind is described by, which may be a solid.
+BEHIND: dict[str, Parameter] = FLUID | {"shear_speed": LAYER["shear_speed"]}
 #: What each part of a stack is described by.
 PART: dict[str, Parameter] = LMMD | LAYERS | {"periods": Parameter(1, count, "Periods of the part.")}
 
@@ -242,15 +244,15 @@ def layer_of(table: Mapping[str, Any]) -> Layer | Membrane | None:
     return Layer(_fluid(values), thickness)
 
 
-def fluid_of(table: Mapping[str, Any]) -> Fluid:
-    """A fluid from a table with the names of `FLUID`.
+def fluid_of(table: Mapping[str, Any], names: Mapping[str, Parameter] = FLUID) -> Fluid:
+    """A fluid from a table with the names of `FLUID`, or a half-space behind from those of `BEHIND`.
 
     Examples
     --------
     >>> fluid_of({"density": 1000, "sound_speed": "1480"})
     Fluid(density=1000, bulk_modulus=2.1904e+09)
     """
-    values = _given(table, FLUID, "fluid")
+    values = _given(table, names, "fluid")
     if "model" not in values and frozenset(values) not in _FLUIDS:
         raise ValueError(
             f"material: expected a name, or density and sound_speed or bulk_modulus, got {', '.join(values) or 'nothing'}"
@@ -303,7 +305,7 @@ def _material(value: Any, key: str) -> Any:
     from ..media.solids import Solid
 
     if isinstance(value, Mapping):
-        return fluid_of(value)
+        return fluid_of(value, BEHIND if key == "after" else FLUID)
     with named(key, "name"):
         if key in ("material", "after") and isinstance(value, str) and value.startswith("solid "):
             return Solid.from_material(value.removeprefix("solid "))

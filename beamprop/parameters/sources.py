@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from .tables import Parameter, apart, named, read
-from .values import LENGTHS, as_it_is, count, length, real
+from .values import LENGTHS, as_it_is, count, length, number, real, switch
 
 if TYPE_CHECKING:
     from ..sources.base import Beam
@@ -30,13 +29,22 @@ def _slits(value: Any, name: str) -> tuple[float, float, int]:
 
 def widths(value: Any, name: str) -> float | tuple[float, float]:
     """A width [m], or those along x and y, as text with a comma between or as a list."""
+    return _along_x_and_y(value, name, "width")
+
+
+def lengths(value: Any, name: str) -> float | tuple[float, float]:
+    """A length [m], or those along x and y, as text with a comma between or as a list."""
+    return _along_x_and_y(value, name, "length")
+
+
+def _along_x_and_y(value: Any, name: str, what: str) -> float | tuple[float, float]:
     from .. import validate
 
     parts = _parts(value)
     if not isinstance(parts, list | tuple) or len(parts) == 1:
         return length(value, name)
     if len(parts) != 2:
-        raise validate.refuse(name, "a width, or two widths along x and y such as 30mm,15mm", value)
+        raise validate.refuse(name, f"a {what}, or two {what}s along x and y such as 30mm,15mm", value)
     return length(parts[0], name), length(parts[1], name)
 
 
@@ -71,11 +79,15 @@ BEAM: dict[str, Parameter] = {
     "profile": Parameter(None, as_it_is, "A measured profile instead: a text file of columns x [m], Re p, Im p [Pa]."),
     "piston": Parameter(None, length, "A circular piston of this radius instead, in three dimensions [m]."),
     "baffle": Parameter(None, as_it_is, "Around the piston.", words=("rigid", "soft"), shown="rigid"),
+    "pressure": Parameter(None, number, "Amplitude of the piston or bowl, rho c times its velocity [Pa].", shown="1"),
     "bowl": Parameter(
         None, _bowl, "A focusing bowl instead, its apex at z0: radius_of_curvature,aperture, such as 64mm,64mm."
     ),
     "source_plane": Parameter(
         None, as_it_is, "A measured plane (hologram) instead: a .mat, .npz or .nc file with x, y [m] and p (y, x) [Pa]."
+    ),
+    "conjugate": Parameter(
+        False, switch, "The file of the profile or measured plane is of the convention exp(+i w t)."
     ),
     "array": Parameter(
         None,
@@ -86,10 +98,10 @@ BEAM: dict[str, Parameter] = {
 #: What each source but the Gaussian beam is described by beside z0, in the order in which it is looked for.
 _BESIDE = {
     "slits": (),
-    "profile": (),
-    "piston": ("baffle", "x0", "y0", "array"),
-    "bowl": ("x0", "y0", "array"),
-    "source_plane": ("azimuth",),
+    "profile": ("conjugate",),
+    "piston": ("baffle", "pressure", "x0", "y0", "array"),
+    "bowl": ("pressure", "x0", "y0", "array"),
+    "source_plane": ("azimuth", "conjugate"),
 }
 #: Parameters of the Gaussian beam.
 _GAUSSIAN = ("fwhm", "x0", "y0", "azimuth", "width_of", "form")
@@ -118,8 +130,13 @@ def beam(table: Mapping[str, Any], scale: float = 1.0) -> Beam:
     known = _GAUSSIAN if kind is None else _BESIDE[kind]
     names = [name for name in BEAM if name not in (*known, kind, "z0")]
     if kind is None:
-        if values["baffle"] is not None:
-            raise ValueError(f"baffle: expected to be left out without piston, got {values['baffle']!r}")
+        for name, where in (
+            ("baffle", "piston"),
+            ("pressure", "piston or bowl"),
+            ("conjugate", "profile or source_plane"),
+        ):
+            if values[name] not in (None, False):
+                raise ValueError(f"{name}: expected to be left out without {where}, got {values[name]!r}")
     else:
         apart(table, tuple(names), kind)
     if values["array"] is None:
@@ -131,18 +148,19 @@ def beam(table: Mapping[str, Any], scale: float = 1.0) -> Beam:
 def _source(kind: str | None, values: Mapping[str, Any]) -> Any:
     """A single source of a kind."""
     place = {name: values[name] for name in ("x0", "y0", "z0")}
+    driven = place | ({} if values["pressure"] is None else {"pressure": values["pressure"]})
     if kind == "slits":
         return _of_slits(values)
     if kind == "piston":
         from ..sources.piston import Piston
 
         with named("piston", "radius"):
-            return Piston(values["piston"], values["baffle"] or "rigid", **place)
+            return Piston(values["piston"], values["baffle"] or "rigid", **driven)
     if kind == "bowl":
         from ..sources.bowl import Bowl
 
         with named("bowl", "radius_of_curvature", "aperture"):
-            return Bowl(*values["bowl"], **place)
+            return Bowl(*values["bowl"], **driven)
     if kind is not None:
         return _of_file(kind, values)
     from ..sources.gaussian import GaussianBeam
@@ -175,9 +193,9 @@ def _of_file(kind: str, values: Mapping[str, Any]) -> Any:
     path = values[kind]
     if kind == "profile":
         with _from_file(kind, "a text file", path):
-            return Profile.from_file(path, values["z0"])
+            return Profile.from_file(path, values["z0"], conjugate=values["conjugate"])
     with _from_file(kind, "a .mat, .npz or .nc file", path):
-        return replace(SourcePlane.from_file(path, values["z0"]), azimuth=values["azimuth"])
+        return SourcePlane.from_file(path, values["z0"], values["conjugate"], azimuth=values["azimuth"])
 
 
 def _array(element: Any, path: Any) -> Any:

@@ -50,7 +50,11 @@ class OnNormal(Summable):
     def at_angle(self: _Source, angle: float) -> _Source:
         """Itself, along the normal alone."""
         if angle:
-            raise validate.refuse("angle", f"0 with a {type(self).__name__}, which is not steered", angle)
+            name = type(self).__name__
+            wanted = (
+                f"0 with a {name}, which is not steered (an Array of them is; tilted transducers are not available)"
+            )
+            raise validate.refuse("angle", wanted, angle)
         return self
 
     def reach(self, tolerance: float) -> float:

@@ -10,6 +10,8 @@ import numpy as np
 
 from .. import validate
 
+#: What is read, if it is there.
+NAMES = ("x", "y", "p", "p_real", "p_imag")
 #: netCDF's attributes by which a stored number is not its value.
 SCALED = ("scale_factor", "add_offset")
 
@@ -54,7 +56,19 @@ def _matlab(path: Path) -> Mapping[str, Any]:
     try:
         return {k: v for k, v in loadmat(path).items() if not k.startswith("__")}
     except NotImplementedError:
-        raise _Refusal(f"{path}: expected a .mat file up to version 7, got version 7.3: save it with '-v7'") from None
+        return _matlab_73(path)
+
+
+def _matlab_73(path: Path) -> Mapping[str, Any]:
+    """Version 7.3 is HDF5, by columns where HDF5 goes by rows, with complex numbers as pairs."""
+    import h5py
+
+    with h5py.File(path) as file:
+        return {k: _of_pairs(v[()]).T for k, v in file.items() if isinstance(v, h5py.Dataset) and k in NAMES}
+
+
+def _of_pairs(values: np.ndarray) -> np.ndarray:
+    return values["real"] + 1j * values["imag"] if values.dtype.names == ("real", "imag") else values
 
 
 def _numpy(path: Path) -> Mapping[str, Any]:
@@ -66,9 +80,7 @@ def _netcdf(path: Path) -> Mapping[str, Any]:
     import h5py
 
     with h5py.File(path) as file:
-        variables = {
-            k: v for k, v in file.items() if isinstance(v, h5py.Dataset) and k in ("x", "y", "p", "p_real", "p_imag")
-        }
+        variables = {k: v for k, v in file.items() if isinstance(v, h5py.Dataset) and k in NAMES}
         scaled = [k for k, v in variables.items() if any(name in v.attrs for name in SCALED)]
         if scaled:
             raise _Refusal(

@@ -118,7 +118,9 @@ class Profile(Tilted):
         table = read_columns(path, 2, 3, "x, Re p, Im p")
         p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
         order = np.argsort(table[:, 0], kind="stable")
-        return cls(table[order, 0], (p.conj() if conjugate else p)[order], z0, angle)
+        profile = cls(table[order, 0], (p.conj() if conjugate else p)[order], z0, angle)
+        object.__setattr__(profile, "file", path.name)
+        return profile
 
     @classmethod
     def from_data(cls, profile: Any, z0: float = 0.0, angle: float = 0.0) -> Profile:

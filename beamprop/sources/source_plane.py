@@ -59,6 +59,7 @@ class SourcePlane(Tilted):
     angle: float = field(default=0.0, kw_only=True)
     azimuth: float = field(default=0.0, kw_only=True)
     in_space_only = True
+    file = ""  # the name of the one it was read from, for the record; changed samples are no longer its
 
     def __post_init__(self) -> None:
         self._check_launch()
@@ -104,8 +105,16 @@ class SourcePlane(Tilted):
         return cls(plane["x"].values, plane["y"].values, plane.values, z0)
 
     @classmethod
-    def from_file(cls, path: str | os.PathLike[str], z0: float = 0.0, conjugate: bool = False) -> SourcePlane:
-        """A plane from x, y and p (or p_real and p_imag) in a file: .mat (up to version 7), .npz or .nc.
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        z0: float = 0.0,
+        conjugate: bool = False,
+        *,
+        angle: float = 0.0,
+        azimuth: float = 0.0,
+    ) -> SourcePlane:
+        """A plane from x, y and p (or p_real and p_imag) in a file: .mat (of any version), .npz or .nc.
 
         Parameters
         ----------
@@ -113,6 +122,8 @@ class SourcePlane(Tilted):
         z0 : float, m
         conjugate : bool
             For files in the convention exp(+i w t).
+        angle, azimuth : float, degree
+            As in `SourcePlane`.
 
         Raises
         ------
@@ -132,9 +143,11 @@ class SourcePlane(Tilted):
         validate.flag(conjugate, "conjugate")
         x, y, p = read_plane(path)
         try:
-            return cls(x, y, np.conj(p) if conjugate else p, z0)
+            plane = cls(x, y, np.conj(p) if conjugate else p, z0, angle=angle, azimuth=azimuth)
         except ValueError as error:
             raise ValueError(f"{path}: {error}") from None
+        object.__setattr__(plane, "file", path.name)
+        return plane
 
     def __eq__(self, value: object) -> bool:
         return isinstance(value, SourcePlane) and self._key() == value._key()

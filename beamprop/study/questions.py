@@ -57,8 +57,10 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         "boundary": Parameter(
             "open", parameters.as_it_is, "One beam, or a periodic array.", words=("open", "periodic")
         ),
-        "period": Parameter(None, parameters.length, "Of the periodic array [m]."),
-        "variables": Parameter("p", _names, "p, v_x, v_z, intensity, power_through."),
+        "period": Parameter(
+            None, parameters.lengths, "Of the periodic array [m]; with y two, along x and y: 30mm,15mm."
+        ),
+        "variables": Parameter("p", _names, "p, v_x, v_z, intensity, power_through; with y v_y too."),
         "average": Parameter(None, parameters.as_it_is, "Mean over a cell about each plane.", words=("cell",)),
     },
     "beam_width": _BEAM
@@ -164,6 +166,11 @@ def _field(description: Description, progress: Progress) -> xr.Dataset:
     return field(**field_arguments(description), progress=progress)
 
 
+def _azimuth(description: Description, beam: Any) -> float | None:
+    """That of a beam whose azimuth or y0 is said, though it be 0 as at a point of a sweep: its widths are of three dimensions."""
+    return beam.azimuth if {"azimuth", "y0"} & description.get("beam", {}).keys() else None
+
+
 def _beam_width(description: Description, progress: Progress) -> xr.Dataset:
     from ..api.beam_width import beam_width
 
@@ -171,7 +178,8 @@ def _beam_width(description: Description, progress: Progress) -> xr.Dataset:
     slab, design = slab_of(description)
     beam = parameters.beam(description.get("beam", {}), design.scale)
     frequency = _or(given["frequency"], design.band)
-    return beam_width(slab, beam, frequency, given["angle"], given["rtol"], given["air_distance"], progress=progress)
+    about = {"air_distance": given["air_distance"], "azimuth": _azimuth(description, beam), "progress": progress}
+    return beam_width(slab, beam, frequency, given["angle"], given["rtol"], **about)
 
 
 def _beam_measures(description: Description, progress: Progress) -> xr.Dataset:
@@ -181,9 +189,8 @@ def _beam_measures(description: Description, progress: Progress) -> xr.Dataset:
     slab, design = slab_of(description)
     beam = parameters.beam(description.get("beam", {}), design.scale)
     frequency = _or(given["frequency"], design.frequency)
-    return beam_measures(
-        slab, beam, frequency, given["angle"], given["rtol"], window=given["window"], progress=progress
-    )
+    about = {"window": given["window"], "azimuth": _azimuth(description, beam), "progress": progress}
+    return beam_measures(slab, beam, frequency, given["angle"], given["rtol"], **about)
 
 
 def lateral_of(given: Mapping[str, Any]) -> dict[str, Any]:

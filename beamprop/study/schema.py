@@ -82,8 +82,9 @@ def _layers(**more: Any) -> dict[str, Any]:
 def _document(name: str | None) -> type[BaseModel]:
     """The model of a file that asks a question; of one without a good name, all that any question may be asked with."""
     fluid = _either(_model("Fluid", parameters.FLUID), _made_by(lambda name: parameters.slab({"background": name})))
+    behind = _either(_model("Behind", parameters.BEHIND), _made_by(lambda name: parameters.slab({"after": name})))
     part = _model("Part", parameters.PART, **_layers())
-    around = {"background": fluid, "after": fluid, "stack": list[part]}  # type: ignore[valid-type]
+    around = {"background": fluid, "after": behind, "stack": list[part]}  # type: ignore[valid-type]
     own = QUESTIONS.get(str(name), {key: p for table in QUESTIONS.values() for key, p in table.items()})
     fields: dict[str, Any] = {
         "question": (_model("Question", _QUESTION | own), ...),
@@ -209,7 +210,7 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
         "layer": parameters.LAYER,
         "stack": parameters.PART,
         "background": parameters.FLUID,
-        "after": parameters.FLUID,
+        "after": parameters.BEHIND,
     }
     table, place = tables.get(path.partition(".")[0], {}), document.get(path.partition(".")[0], {})
     for part, following in zip(path.split(".")[1:], [*path.split(".")[2:], ""], strict=True):

@@ -37,8 +37,8 @@ def choose_in_space(
     """A contour on which the field at x and y of the `grid`, from the source's middle, keeps rtol; its error by a second contour."""
     if s.backward_branch is not None:
         raise ValueError(
-            "slab: expected half-spaces that carry forward waves where y is given, got one that carries backward waves: "
-            "not available in three dimensions yet"
+            "slab: expected half-spaces that carry forward waves in three dimensions, got one that carries backward waves: "
+            "not available yet"
         )
     sheet = _sheet(sources, s.k0, grid)
     extent = _extent(s, sources, sheet, z, rtol)
