@@ -125,7 +125,7 @@ def test_progress_is_for_terminals(monkeypatch):
     """Without a terminal there is no bar, nor where --quiet asks for none."""
     seen = []
 
-    def question(*arguments, progress):
+    def question(*arguments, progress, **options):
         seen.append(progress)
         raise ValueError("slab: expected nothing but this test")
 
