@@ -88,7 +88,7 @@ def test_a_beam_of_three_dimensions_needs_y(beam, ask):
         ({"slab": bp.lmmd_emt_slab(SLAB)}, "density_x: expected none, or density"),
         (
             {"slab": bp.Slab.uniform(bp.AIR, 0.1, after=bp.Fluid(-1.0, -1.4e5))},
-            "slab: expected half-spaces that carry forward waves where y is given",
+            "slab: expected half-spaces that carry forward waves in three dimensions",
         ),
     ],
 )
