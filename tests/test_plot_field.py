@@ -246,6 +246,22 @@ def test_planes_of_a_volume(at, upright, level, title, monkeypatch):
     assert faults(ax.figure, monkeypatch) == []
 
 
+@pytest.mark.parametrize(("far", "across"), [(0.1, "m"), (0.09, "mm"), (2.0, "m"), (3.0, "mm")])
+def test_both_axes_of_a_map_have_a_unit_unless_sizes_differ_widely(far, across):
+    """x reaches 4 cm: beside 10 cm of z it was in mm, and z in m."""
+    ds = beam(np.linspace(-0.04, 0.04, 9), np.linspace(0.0, far, 7))
+    ax = bp.plot.field(ds)
+    assert (ax.get_ylabel(), ax.get_xlabel()) == (f"x [{across}]", f"z [{'m' if far >= 0.1 else 'mm'}]")
+
+
+def test_the_planes_of_a_volume_have_the_same_unit():
+    """The plane (y, x) alone reaches less than a decimetre."""
+    ds = volume()
+    small = ds.assign_coords(x=0.05 * ds.x, y=0.05 * ds.y)
+    assert max(float(abs(small.x).max()), float(abs(small.y).max())) < 0.1 <= float(small.z.max())
+    assert {label[-3:] for ax in bp.plot.field(small) for label in (ax.get_xlabel(), ax.get_ylabel())} == {"[m]"}
+
+
 def test_what_volumes_are_refused_for(tmp_path):
     with pytest.raises(ValueError, match=r"^ds: .* in a volume: select one of y, x or z$"):
         bp.plot.animate(volume(), tmp_path / "a.gif")

@@ -29,6 +29,8 @@ LOWEST, STEEPEST = 22.0, 4.0
 HIGHEST, PAGE_HEIGHT = 1.5, 230.0
 #: Height over width of a map that is not in true proportion.
 BROAD, STEEP = 0.6, 1.0
+#: Both axes of a map have one unit, unless one reaches so many times as far.
+FEW_ZEROS = 50
 #: Lines nearer to each other than this are not drawn [mm].
 APART = 1.2
 
@@ -134,8 +136,8 @@ def _fit_height(figure: Any) -> None:
 # --- on the map -------------------------------------------------------------------------------------------
 
 
-def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
-    """The map's cells, each about its point."""
+def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn, largest: float = 0.0) -> Any:
+    """The map's cells, each about its point. `largest` is the largest position of maps beside it, if that is larger."""
     upright, level = map(str, p.dims)
     mesh = ax.pcolormesh(
         p[level].values,
@@ -147,9 +149,16 @@ def mesh_of(ax: Any, p: xr.DataArray, shown: Drawn) -> Any:
         vmin=shown.low,
         vmax=shown.high,
     )
+    reach = {name: farthest(p, name) for name in (level, upright)}
+    largest = max(largest, *reach.values())
     for axis, name in ((ax.xaxis, level), (ax.yaxis, upright)):
-        units.name_axis(axis, name, p[name].values, "m")
+        units.name_axis(axis, name, largest if FEW_ZEROS * reach[name] >= largest else reach[name], "m")
     return mesh
+
+
+def farthest(p: xr.DataArray, name: str) -> float:
+    """The largest position along an axis, of either sign."""
+    return float(np.abs(p[name].values).max(initial=0.0))
 
 
 def add_colorbar(ax: Any, mesh: Any, shown: Drawn, above: bool = False) -> Any:

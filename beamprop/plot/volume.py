@@ -36,12 +36,13 @@ def draw(ds: xr.Dataset, p: xr.DataArray, shown: Drawn, at: dict[str, int], widt
     across = (width - BAR * colorbar) / beside - BESIDE
     heights = [min(maps.proportion(plane, across) or maps.BROAD, STEEP) * across for plane in planes]
     each = [max(heights)] if beside == 3 else heights
+    largest = max(maps.farthest(p, str(d)) for d in p.dims)
     figure = style.new_figure(width, TITLE + sum(height + ABOVE for height in each))
     with mpl.rc_context(style.settings()):
         grid = figure.subplots(3 // beside, beside, squeeze=False, height_ratios=each)
         axes = grid.ravel()
         for ax, plane, part, held in zip(axes, planes, values, ("y", "x", "z"), strict=True):
-            mesh = maps.mesh_of(ax, plane, shown._replace(values=part))
+            mesh = maps.mesh_of(ax, plane, shown._replace(values=part), largest)
             note = maps.shape(ax, plane, across)
             if "z" in plane.dims:
                 maps.outline(ax, ds, across, shown.line)
