@@ -101,6 +101,9 @@ def test_means_over_a_cell(y):
 
 
 def test_refusals_name_what_there_is():
+    plate = bp.Slab(bp.Layer(bp.Solid(7900.0, 5900.0, 3200.0), 1e-3), background=bp.Fluid.from_speed(1000.0, 1500.0))
+    with pytest.raises(ValueError, match=r"got z = 0.0005 in a solid$"):  # there is no power_through to turn to
+        bp.field(plate, bp.GaussianBeam((0.01, 0.01)), 1e6, 0.0, 5e-4, y=0.0, variables="intensity")
     said = r"^variables: expected some of p, v_x, v_y, v_z, u_x, .*, got 'power_through'"
     with pytest.raises(ValueError, match=said):
         bp.field(LOSSY, BEAM, F, 0.0, 0.1, y=0.0, variables="power_through")

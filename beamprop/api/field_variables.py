@@ -48,9 +48,10 @@ def checked_variables(variables: Any, slab: Slab, z: np.ndarray, known: tuple[st
             raise validate.refuse("variables", expected, name)
     chosen = tuple(v for v in known if v in names or (v in INTENSITY and "intensity" in names))
     if set(INTENSITY) & set(chosen) and (solid := in_solid(slab, z)).any():
+        whole = "; power_through is the whole flux there" if "power_through" in known else ""
         raise ValueError(
             f"variables: expected an intensity at z in fluids (p v lacks the part of the shear stress), got z = {z[solid][0]:g} "
-            "in a solid; power_through is the whole flux there"
+            f"in a solid{whole}"
         )
     return chosen
 
