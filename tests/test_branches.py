@@ -93,3 +93,21 @@ def test_branches_are_drawn_as_lines():
         f, k = curve(ds, number)
         np.testing.assert_array_equal(line.get_xydata(), np.transpose([f, k.real]))
     plt.close("all")
+
+
+def test_branches_are_followed_beside_zero_group_velocity():
+    """A backward wave of a brass plate in water (S2b) and a forward one (S1) part at 1.93 MHz mm, where they move by twice a step of k0 each."""
+    plate = bp.Slab(bp.Layer(bp.Solid(8400.0, 4400.0, 2200.0), MM), background=bp.Fluid.from_speed(1000.0, 1480.0))
+    ds = bp.guided_modes(plate, np.linspace(1.95e6, 2.25e6, 7), 1.3, 0.12, leaky=True)
+    backward = ds.branch.values[ds.direction.values < 0]
+    assert backward.size == 5
+    assert np.unique(backward).size == 1
+    _, k = curve(ds, int(backward[0]))
+    assert np.all(np.diff(k.real) < 0)
+    assert np.all(np.diff(k.imag) > 0)
+    kept = [curve(ds, number)[0].size for number in range(int(ds.branch.max()) + 1)]
+    assert sorted(kept) == [
+        1,
+        5,
+        *6 * [7],
+    ]  # the first is the backward wave once more, which runs forward from k = 0 on

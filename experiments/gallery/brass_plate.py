@@ -11,6 +11,7 @@ wrong; of the 4 that leak forward the strongest loses 1.73 dB a millimetre.
 import sys
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import numpy as np
 from gallery_main import PAGE, main, panels
 
@@ -71,22 +72,20 @@ def picture(result, width=PAGE):
     modes = result["spectrum"]
     fd, kx = (1e-3 * modes.frequency * PLATE.thickness).broadcast_like(modes.kx), modes.kx_over_k0
     printed = [(mhz, *k) for mhz, waves in BRASS_IN_WATER.items() for k in waves]
-    kinds = (("forward", modes.direction > 0, "C0"), ("backward", modes.direction < 0, "tab:red"))
     for ax, values, row in ((left, kx.real, 1), (right, abs(kx.imag), 2)):
-        for name, which, colour in kinds:
-            ax.plot(
-                fd.where(which).values.ravel(),
-                values.where(which).values.ravel(),
-                ".",
-                ms=2.5,
-                color=colour,
-                label=name,
-            )
+        for number in range(int(modes.branch.max()) + 1):
+            own = (modes.branch == number).values
+            forward = bool((modes.direction.values[own] > 0).all())
+            marker = "-" if own.sum() > 1 else "."
+            ax.plot(fd.values[own], values.values[own], marker, ms=2.5, lw=1, color="C0" if forward else "tab:red")
         ax.plot([p[0] for p in printed], [p[row] for p in printed], "ko", mfc="none", ms=5, lw=0, label="printed")
         ax.set(xlabel="frequency times thickness [MHz mm]", xlim=(0, 4.1))
     left.set(ylabel="Re kx/k0", ylim=(0, 1.1))
     right.set(ylabel="|Im kx|/k0", ylim=(0, HEIGHT))
-    right.legend(loc="center right")
+    lines = [
+        plt.Line2D([], [], color=colour, label=name) for colour, name in (("C0", "forward"), ("tab:red", "backward"))
+    ]
+    right.legend(handles=[*lines, right.lines[-1]], loc="center right")
     return figure
 
 
