@@ -16,7 +16,8 @@ def branches(k0: np.ndarray, kx: np.ndarray) -> np.ndarray:
     Along growing k0 a branch is continued with its last slope, at first with its phase speed, and branches are given to modes so that the
     sum of their distances is least. A mode farther from its branch than the step of k0, or of the branch itself, begins a new branch,
     unless it continues a branch of which nothing else is left near: a wave of little group speed moves by several steps of k0, and its
-    slope changes at once where a wave that runs forward or backward becomes one that leaks. Branches that cross keep their slopes, as symmetric and antisymmetric waves of a plate do.
+    slope changes at once where a wave that runs forward or backward becomes one that leaks. Branches that cross keep their slopes, as
+    symmetric and antisymmetric waves of a plate do.
     """
     number = np.full(kx.shape, -1)
     lines: dict[int, tuple[float, complex, complex]] = {}  # k0, kx and slope of the branches that go on
