@@ -1,6 +1,7 @@
-"""Datasets of every question, for the tests of files."""
+"""Datasets of every question, for the tests of files; and fields written in blocks against whole ones."""
 
 import numpy as np
+import xarray as xr
 
 import beamprop as bp
 
@@ -22,3 +23,16 @@ DATASETS = {
     "modes": lambda: bp.guided_modes(LOSSLESS, [2400.0, F]),
 }
 LOSSLESS = bp.Slab(bp.lmmd_cell(rho_m=0.05, delta_rho=0), 20)
+
+
+def assert_in_blocks_as_whole(folder, ending, arguments, memory, rtol, **options):
+    """A file of `save_field` holds what `save` writes of `field`, but p to `rtol` of the largest; and it returns all but p."""
+    path, whole = folder / f"map.{ending}", folder / f"whole.{ending}"
+    bp.save(bp.field(*arguments, **options), whole)
+    rest = bp.save_field(path, *arguments, memory=memory, **options)
+    loaded, wanted = bp.load(path), bp.load(whole)
+    xr.testing.assert_identical(loaded.drop_vars("p"), wanted.drop_vars("p"))
+    xr.testing.assert_identical(loaded.drop_vars("p"), rest)
+    assert loaded.p.dims == wanted.p.dims
+    assert loaded.p.attrs == wanted.p.attrs
+    np.testing.assert_allclose(loaded.p, wanted.p, rtol=0, atol=rtol * float(np.abs(wanted.p).max()))

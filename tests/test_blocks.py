@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from click.testing import CliRunner
+from saved import assert_in_blocks_as_whole
 
 import beamprop as bp
 from beamprop.cli import main
@@ -28,15 +29,7 @@ X, Z = np.linspace(-0.5, 0.5, 65), np.linspace(-0.05, 0.2, 23)
     ],
 )
 def test_a_file_in_blocks_is_the_file_of_the_whole(tmp_path, ending, memory, frequency, x, z, angle):
-    path, whole = tmp_path / f"map.{ending}", tmp_path / f"whole.{ending}"
-    bp.save(bp.field(SLAB, BEAM, frequency, x, z, angle), whole)
-    rest = bp.save_field(path, SLAB, BEAM, frequency, x, z, angle, memory=memory)
-    found, wanted = bp.load(path), bp.load(whole)
-    xr.testing.assert_identical(found.drop_vars("p"), wanted.drop_vars("p"))
-    xr.testing.assert_identical(found.drop_vars("p"), rest)
-    assert found.p.dims == wanted.p.dims
-    assert found.p.attrs == wanted.p.attrs
-    np.testing.assert_allclose(found.p, wanted.p, rtol=0, atol=1e-11 * float(np.abs(wanted.p).max()))
+    assert_in_blocks_as_whole(tmp_path, ending, (SLAB, BEAM, frequency, x, z, angle), memory, 1e-11)
 
 
 def test_a_periodic_map_in_blocks(tmp_path):

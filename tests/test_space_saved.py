@@ -4,7 +4,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
-import xarray as xr
+from saved import assert_in_blocks_as_whole
 
 import beamprop as bp
 
@@ -25,15 +25,7 @@ X, Y, Z = np.linspace(-0.5, 0.5, 17), np.linspace(-0.4, 0.4, 13), np.linspace(0.
     ],
 )
 def test_a_file_in_blocks_is_the_file_of_the_whole(tmp_path, ending, memory, frequency, z, angle, y):
-    path, whole = tmp_path / f"map.{ending}", tmp_path / f"whole.{ending}"
-    bp.save(bp.field(SLAB, BEAM, frequency, X, z, angle, y=y), whole)
-    rest = bp.save_field(path, SLAB, BEAM, frequency, X, z, angle, y=y, memory=memory)
-    loaded, wanted = bp.load(path), bp.load(whole)
-    xr.testing.assert_identical(loaded.drop_vars("p"), wanted.drop_vars("p"))
-    xr.testing.assert_identical(loaded.drop_vars("p"), rest)
-    assert loaded.p.dims == wanted.p.dims
-    assert loaded.p.attrs == wanted.p.attrs
-    np.testing.assert_allclose(loaded.p, wanted.p, rtol=0, atol=1e-12 * float(np.abs(wanted.p).max()))
+    assert_in_blocks_as_whole(tmp_path, ending, (SLAB, BEAM, frequency, X, z, angle), memory, 1e-12, y=y)
 
 
 def test_many_planes_keep_the_stated_error(tmp_path):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,14 +28,15 @@ def _cascade(a: Scatter | None, b: Scatter) -> Scatter:
     return Scatter(left, right, a.log_t + b.log_t - np.log(loop))
 
 
-def _power(cell: Scatter, periods: int) -> Scatter | None:
+def power(cell: Any, periods: int, cascade: Callable[[Any, Any], Any] = _cascade) -> Any:
+    """So many cells one behind the other, by squaring; None for none."""
     out, square = None, cell
     while periods:
         if periods & 1:
-            out = _cascade(out, square)
+            out = cascade(out, square)
         periods >>= 1
         if periods:
-            square = _cascade(square, square)
+            square = cascade(square, square)
     return out
 
 
@@ -123,7 +125,7 @@ class Medium:
                         cell = None
                         for v in layers:
                             cell = _cascade(cell, self.layer(v, v[3], k, y))
-                        whole = _power(cell, last - first)
+                        whole = power(cell, last - first)
                         out = _cascade(out, whole)
                     out = self._pieces(out, layers, at + last * period, at + last * period, hi, k, y)
             at = end

@@ -15,7 +15,7 @@ import numpy as np
 
 import beamprop as bp
 
-from .medium import Medium
+from .medium import Medium, power
 
 #: The most that a sheet's generator times its thickness may be, and the terms that its series takes for that: 2^28/28! is 1e-21.
 SHEET, TERMS = 2.0, 14
@@ -75,17 +75,6 @@ def _doubled(a: Scatter2) -> Scatter2:
     around = _times(_inverse(loop), a.there)
     r, t = a.left + _times(a.there, a.left, around), _times(a.there, around)
     return Scatter2(r, r, t, t, 2 * a.log_d + np.log(_determinant(loop)))
-
-
-def _power(cell: Scatter2, periods: int) -> Scatter2 | None:
-    out, square = None, cell
-    while periods:
-        if periods & 1:
-            out = _cascade(out, square)
-        periods >>= 1
-        if periods:
-            square = _cascade(square, square)
-    return out
 
 
 class SolidMedium(Medium):
@@ -193,7 +182,7 @@ class SolidMedium(Medium):
                 else:
                     out = self._parts(out, layers, at + (first - 1) * period, (lo, at + first * period), k, y)
                     if whole:
-                        out = _cascade(out, _power(functools.reduce(_cascade, whole, None), last - first))
+                        out = _cascade(out, power(functools.reduce(_cascade, whole, None), last - first, _cascade))
                     out = self._parts(out, layers, at + last * period, (at + last * period, hi), k, y)
             at += period * periods
         return out
