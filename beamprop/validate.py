@@ -35,7 +35,7 @@ def shown(value: Any) -> str:
         return f"a {type(value).__name__} of {len(value)}"
     text = type(value).__name__
     with contextlib.suppress(Exception):  # an integer of 5000 digits has no repr
-        text = repr(value)
+        text = " ".join(line.strip() for line in repr(value).splitlines())  # arrays have many
     return text if len(text) <= SHOWN else text[: SHOWN - 3] + "..."
 
 

@@ -47,6 +47,16 @@ def test_unlike_sources_through_a_plate():
     assert bp.provenance(ds)["beam"] == summed(UNLIKE)
 
 
+def test_errors_are_added_over_the_largest_of_the_sum():
+    """Of two beams beside each other, whose planes hold their peaks: each error over its own largest |p|, weighted."""
+    x, y = np.linspace(-0.03, 0.08, 111), np.linspace(-0.02, 0.02, 41)
+    a, b = bp.GaussianBeam((0.02, 0.02), z0=-0.03), bp.GaussianBeam((0.015, 0.02), x0=0.05, z0=-0.03)
+    each = [bp.field(PLATE, source, 0.2e6, x, 0.02, y=y, rtol=1e-6) for source in (a, b, a + 2j * b)]
+    errors_of, largest = zip(*((float(ds.error_estimate), float(abs(ds.p).max())) for ds in each), strict=True)
+    added = (errors_of[0] * largest[0] + 2 * errors_of[1] * largest[1]) / largest[2]
+    assert errors_of[2] == pytest.approx(added, rel=1e-3)
+
+
 def test_sources_that_nearly_cancel_are_asked_more_closely():
     """Of two discs that differ by a ring of 2 um little is left, to the rtol of that: the ring's own integral, thin as it is."""
     thin = 2e-6

@@ -69,7 +69,8 @@ def space_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float,
     beams = checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     source: Any = beam
     if not hasattr(beam, "in_space"):
-        raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array in three dimensions", beam)
+        expected = "one GaussianBeam, Piston, Bowl, SourcePlane or Array in three dimensions (of a sum, field alone is available yet)"
+        raise validate.refuse("beam", expected, beam)
     azimuth = source.azimuth if azimuth is None else validate.as_number(azimuth, "azimuth")
     source.in_space(azimuth)  # refuses the form that is not known there
     for value in beams.flat[1]:

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from .. import validate
 from .base import Beam, Tilted
 
 
@@ -157,7 +158,6 @@ def needs_y(beam: Any) -> bool:
 def check_on_a_line(beam: Any) -> Any:
     """The source, or a ValueError where it is one of three dimensions alone."""
     if needs_y(beam):
-        raise ValueError(
-            f"beam: expected one on which nothing depends on y (one width, no azimuth, no y0), got {beam!r}: ask field with y="
-        )
+        expected = "one on which nothing depends on y (one width, no azimuth, no y0), or field asked with y="
+        raise validate.refuse("beam", expected, beam)
     return beam
