@@ -102,12 +102,31 @@ def test_without_y_it_is_the_cut_through_the_middle():
 
 @pytest.mark.parametrize(
     "axes",
-    [["--x=-1cm:1cm:9", "--z", "1cm:2cm:5"], ["--x=-1cm:1cm:9", "--y=-1cm:1cm:9", "--z", "2cm"]],
-    ids=["cut", "plane"],
+    [
+        ["--x=-1cm:1cm:9", "--z", "1cm:2cm:5"],
+        ["--x=-1cm:1cm:9", "--y=-1cm:1cm:9", "--z", "2cm"],
+        ["--x=-1cm:1cm:9", "--y=-1cm:1cm:9", "--z", "1cm:2cm:5"],
+    ],
+    ids=["cut", "plane", "volume"],
 )
 def test_pictures(axes, tmp_path):
-    good("field", *AROUND, "--piston", "1cm", "--z0=-3cm", *axes, "--plot", "a.png")
+    good("field", *AROUND, "--piston", "1cm", "--z0=-3cm", *axes, "--plot", "a.png", "--save-study", "study.toml")
     assert (tmp_path / "a.png").stat().st_size > 5000
+    (tmp_path / "a.png").unlink()
+    good("run", "study.toml")
+    assert (tmp_path / "a.png").stat().st_size > 5000
+
+
+def test_leaky_modes():
+    """With the solid plate that has them."""
+    plate = ["--layer", "solid steel 1mm", "--background", "water", "--frequency", "3MHz", "--strip-over-k0", "0.12"]
+    ran = good("guided_modes", *plate, "--leaky", "--json", "--save-study", "study.toml", "--output", "a.nc")
+    slab = bp.Slab(bp.Layer(bp.Solid.from_material("steel"), 1e-3), background=bp.material("water"))
+    known = bp.guided_modes(slab, 3e6, strip_over_k0=0.12, leaky=True).kx_over_k0.values
+    assert known.size > 3
+    np.testing.assert_allclose(from_json(json.loads(ran.stdout)["data_vars"]["kx_over_k0"]["data"]), known, rtol=1e-12)
+    good("run", "study.toml")
+    np.testing.assert_allclose(bp.load("a.nc").kx_over_k0, known, rtol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -131,7 +150,10 @@ def test_pictures(axes, tmp_path):
         (["--array", "none.csv"], "--array: expected a text file that can be read, got 'none.csv'"),
         (["--array", "array.csv", "--x0", "1cm"], "--x0: expected to be left out beside --array, got 0.01"),
         (["--source-plane", "array.csv"], "--source-plane: expected a file .mat, .npz, .nc, got 'array.csv'"),
-        (["--piston", "1cm", "--plot", "a.png"], "--plot: expected axes for two of --x, --y and --z, got one value"),
+        (
+            ["--piston", "1cm", "--plot", "a.png"],
+            "--plot: expected axes for two or three of --x, --y and --z, got one value",
+        ),
         (["--piston", "1cm", "--variables", "power_through"], "--variables: expected"),
         (
             ["--boundary", "periodic", "--period", "1cm"],

@@ -166,9 +166,9 @@ def field(**o: Any) -> None:
     if o["plot"] and (is_several(o["frequency"]) or is_several(o["angle"])):
         raise click.UsageError("--plot: expected one frequency and one angle, got several")
     flat = [n for n in "xyz" if isinstance(o[n], float) or (n == "y" and o[n] is None)]
-    if o["plot"] and len(flat) != 1:
-        wanted = "--x and --z" if o["y"] is None else "two of --x, --y and --z"
-        raise click.UsageError(f"--plot: expected axes for {wanted}, got {'one value' if flat else 'three axes'}")
+    if o["plot"] and len(flat) > 1:
+        wanted = "--x and --z" if o["y"] is None else "two or three of --x, --y and --z"
+        raise click.UsageError(f"--plot: expected axes for {wanted}, got one value")
     if o["plot"] and "p" not in variables:
         raise click.UsageError(f"--plot: expected p among --variables, got {','.join(variables)}")
     if o["memory"] is not None and (o["plot"] or o["as_json"] or not o["output"]):
@@ -252,6 +252,7 @@ def bloch(**o: Any) -> None:
 @axis("frequency", "[Hz], an axis.", ONE)
 @option("--kx-over-k0-max", kind=REAL, text="Search up to this Re kx over k0.", default="10", shown="10")
 @option("--strip-over-k0", kind=REAL, text="Search up to this |Im kx| over k0.", default="0.5", shown="0.5")
+@switch("--leaky", text="Those that radiate as they run along, too.")
 @output("plot_width")
 def guided_modes(**o: Any) -> None:
     """The modes that the slab guides.

@@ -21,7 +21,7 @@ from .sweep import sample_of
 
 #: What a picture of each question shows: the dimensions that it may have beside those of the sweep.
 DRAWN = {
-    "field": ({"x", "z"}, "one frequency and one angle, and axes for x and z"),
+    "field": ({"x", "y", "z"}, "one frequency and one angle, and axes for x and z, or with y for two of x, y and z"),
     "beam_width": ({"frequency", "angle"}, "an axis for frequency or angle"),
     "scattering": ({"frequency", "kx", "kx_over_k0", "angle"}, "an axis for frequency, kx_over_k0, kx or angle"),
     "bloch": ({"frequency", "kx_over_k0"}, "an axis for frequency or kx_over_k0"),
@@ -217,7 +217,7 @@ def not_drawn(study: StudyFile, variables: dict[str, dict[str, int]]) -> Iterabl
     dims, expected = DRAWN[study.name]
     got = set().union(*variables.values())
     along = study.output["along"]
-    if not got & dims or (study.name == "field" and {"x", "z"} - got) or (study.name == "field" and got - dims):
+    if not got & dims or (study.name == "field" and (len(got & dims) < 2 or got - dims)):
         yield Mistake("output.plot", f"expected {expected}, got {', '.join(sorted(got)) or 'one value'}")
     elif along is not None and along not in got:
         yield Mistake("output.along", f"expected {' or '.join(sorted(got))}, got {along!r}")

@@ -72,6 +72,7 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
     | {
         "kx_over_k0_max": Parameter(10.0, parameters.real, "Search up to this Re kx over k0."),
         "strip_over_k0": Parameter(0.5, parameters.real, "Search up to this |Im kx| over k0."),
+        "leaky": Parameter(False, parameters.switch, "Those that radiate as they run along, too."),
     },
 }
 
@@ -226,7 +227,7 @@ def _guided_modes(description: Description, progress: Progress) -> xr.Dataset:
     given = arguments(description)
     slab, design = slab_of(description)
     frequency = _or(given["frequency"], design.frequency)
-    return guided_modes(slab, frequency, given["kx_over_k0_max"], given["strip_over_k0"])
+    return guided_modes(slab, frequency, given["kx_over_k0_max"], given["strip_over_k0"], leaky=given["leaky"])
 
 
 _ASK: dict[str, Callable[[Description, Progress], xr.Dataset]] = {
