@@ -8,17 +8,13 @@ At 2.114 MHz a wave of 0.0492 k0 runs backward and lies 0.0161 k0 below the axis
 wrong; of the 4 that leak forward the strongest loses 1.73 dB a millimetre.
 """
 
-import sys
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
-from gallery_main import PAGE, main, panels
+from gallery_main import PAGE, main, panels, published
 
 import beamprop as bp
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from conformance.published import BRASS_IN_WATER
+BRASS_IN_WATER = published("BRASS_IN_WATER")
 
 WATER, BRASS = bp.Fluid.from_speed(1000.0, 1480.0), bp.Solid(8400.0, 4400.0, 2200.0)
 PLATE = bp.Slab(bp.Layer(BRASS, 1e-3), background=WATER)

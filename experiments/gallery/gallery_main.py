@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import runpy
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,11 @@ from beamprop.plot.style import new_figure
 
 #: Width of two columns of a journal [mm]; one is 88.
 PAGE = 180.0
+
+
+def published(name: str) -> Any:
+    """Values that others have printed, by their name in `conformance/published.py`, which lies in the folder above."""
+    return runpy.run_path(str(Path(__file__).parents[1] / "conformance" / "published.py"))[name]
 
 
 def panels(count: int, width: float = PAGE, height: float = 54.0) -> tuple[plt.Figure, np.ndarray]:
