@@ -98,7 +98,16 @@ def test_the_band_is_widened_where_its_end_is_missing():
 
 
 def test_rounding_asks_for_a_contour_nearer_to_the_axis():
-    assert bent.next_plan(PLAN, 1e-6, 0.29 * RTOL, after(1e-6, 1e-6), RTOL) == PLAN._replace(depth=1.2, window=13.0)
+    """Where a wider window did not help."""
+    attempts = after(1e-6, 1e-6)._replace(wider=True)
+    assert bent.next_plan(PLAN, 1e-6, 0.29 * RTOL, attempts, RTOL) == PLAN._replace(depth=1.2, window=13.0)
+
+
+def test_a_wider_band_says_nothing_of_windows():
+    """What is left once the band is wide enough may be images."""
+    following = bent.next_plan(PLAN, 1e-6, 0.29 * RTOL, after(1e-6, 1e-6), RTOL)
+    assert following.depth == PLAN.depth
+    assert following.window > PLAN.window
 
 
 @pytest.mark.parametrize(

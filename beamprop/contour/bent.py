@@ -43,10 +43,11 @@ class Attempts(NamedTuple):
     shrinks: int  #: how often a plan may still come nearer to the axis
     made: int = 0
     in_vain: int = 0  #: plans in a row, up to the last, that did not halve the smallest error
+    wider: bool = False  #: whether the window of the last plan was wider than that before: a band alone says nothing of windows
 
     def after(self, worst: float, smallest: float) -> Attempts:
         """The attempts after a plan with the error `worst`; `smallest` is the least of the plans before it, inf for the first."""
-        return Attempts(self.shrinks, self.made + 1, self.in_vain + 1 if worst > 0.5 * smallest else 0)
+        return self._replace(made=self.made + 1, in_vain=self.in_vain + 1 if worst > 0.5 * smallest else 0)
 
 
 def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rtol: float) -> BentPlan | None:
@@ -70,7 +71,7 @@ def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rto
         return None
     if edge > error.SHARE * rtol:
         return plan._replace(band=plan.band * 1.5)
-    if attempts.in_vain:  # a wider window does not help: rounding, magnified by exp(depth X)
+    if attempts.in_vain and attempts.wider:  # a wider window does not help: rounding, magnified by exp(depth X)
         return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
     more = math.log(min(worst, MEANINGLESS) / (error.SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)
     return plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
@@ -95,8 +96,9 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
         if best is not None and best.worst <= rtol:
             return best, planned
         compared = error.compare(checks, pair_of_contours(search, planned), rtol)
-        # widening the first plan did not do: is the peak outside?
-        if best is not None and by_window is None and compared.estimate.worst > rtol:
+        # widening the first plan did not do: is the peak outside? Unless only its band was too short until now
+        done = not attempts.wider and compared.estimate.edge <= error.SHARE * rtol
+        if best is not None and by_window is None and compared.estimate.worst > rtol and not done:
             by_window, checks = compared.checks, checks.places.with_wider_look(search, planned, compared.checks)
             compared = compared._replace(checks=checks, estimate=error.estimate(checks, *compared[:2]))
         checks, (worst, edge) = compared.checks, (compared.estimate.worst, compared.estimate.edge)
@@ -108,6 +110,7 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
         plan = next_plan(planned.plan, worst, edge, attempts, rtol)
         if plan is None:
             break
+        attempts = attempts._replace(wider=plan.window > planned.plan.window)
         planned = planned._replace(plan=plan)
     return best or _without_any(search, planned), planned
 
