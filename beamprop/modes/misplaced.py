@@ -135,14 +135,28 @@ def _any_mode(s: SampledSlab, box: Box, edge: float, above: float) -> bool:
 
 
 def modes_in(s: SampledSlab, box: Box, of: DispersionOf = dispersion_of) -> list[Mode]:
-    """All modes in a box; TooManyModes if there are more than MOST_WRONG, or if not all can be located."""
-    total = winding(of(s, 0.0), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
+    """All modes in a box; TooManyModes if there are more than MOST_WRONG, or if not all can be located.
+
+    Of a lossless slab those may be missing that lie on the box's upper side, as next to a branch point, and are forward.
+    """
+    total = _count(s, box, of, 0.0)
     if total <= 0:
         return []
-    zeros_of_d = located(s, box, total, MOST_WRONG, MOST_VALUES, of)
-    if len(zeros_of_d) < total:
-        raise TooManyModes
-    return with_directions(s, zeros_of_d, of)
+    modes = with_directions(s, located(s, box, total, MOST_WRONG, MOST_VALUES, of), of)
+    if len(modes) < total:
+        lifted = total - _count(s, box, of, LOSS) if s.lossless else 0  # by a small loss, as forward ones are
+        if sum(not _lifted(mode) for mode in modes) < total - max(lifted, 0):
+            raise TooManyModes
+    return modes
+
+
+def _count(s: SampledSlab, box: Box, of: DispersionOf, loss: float) -> int:
+    return winding(of(s, loss), box.outline(48, _branch_beside(s)), FINEST * box.right, MOST_VALUES)
+
+
+def _lifted(mode: Mode) -> bool:
+    """Whether a mode lies on the axis, and goes up with a small loss."""
+    return mode.direction > 0 and abs(mode.kx.imag) < 1e-9 * abs(mode.kx)
 
 
 def _grouped(modes: list[complex]) -> list[list[complex]]:
