@@ -43,7 +43,9 @@ class Attempts(NamedTuple):
     shrinks: int  #: how often a plan may still come nearer to the axis
     made: int = 0
     in_vain: int = 0  #: plans in a row, up to the last, that did not halve the smallest error
-    wider: bool = False  #: whether the window of the last plan was wider than that before: a band alone says nothing of windows
+    wider: bool = (
+        False  #: whether the window of the last plan was wider than that before: a band alone says nothing of windows
+    )
 
     def after(self, worst: float, smallest: float) -> Attempts:
         """The attempts after a plan with the error `worst`; `smallest` is the least of the plans before it, inf for the first."""
