@@ -194,7 +194,7 @@ def field_sum(
 def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     """|p| of the propagating waves where the beam lands on each plane: errors are over the largest |p| of a plane, (Z,).
 
-    Rays of nine strong plane waves, and panels over the strong part of the spectrum; rays that go too far are left out.
+    Rays of nine strong plane waves, of 65 where solids let narrow bands through, and panels over the strong part of the spectrum; rays that go too far are left out.
     """
     wide, tilt = source.band(1e-3) - m.k0 * abs(source.sine), m.k0 * source.sine
     lo, hi = max(tilt - wide, -0.995 * m.k0), min(tilt + wide, 0.995 * m.k0)
@@ -204,8 +204,9 @@ def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     def h(k: np.ndarray) -> np.ndarray:
         return m.response(np.abs(k) + 0j, z, source.beam.z0)  # even in k
 
-    rays, step = np.linspace(0.95 * lo + 0.05 * hi, 0.05 * lo + 0.95 * hi, 9), 1e-5 * m.k0
-    x = np.nan_to_num(-np.angle(h(rays + step) / h(rays - step)) / (2 * step))  # (Z, 9)
+    number = 65 if has_solids(m) else 9
+    rays, step = np.linspace(0.95 * lo + 0.05 * hi, 0.05 * lo + 0.95 * hi, number), 1e-5 * m.k0
+    x = np.nan_to_num(-np.angle(h(rays + step) / h(rays - step)) / (2 * step))  # (Z, rays)
     most = 4 * 800 / (hi - lo) - source.beam.reach(1e-3) - m.thickness
     x = np.where(np.abs(x) < most, x, 0.0)
     count = math.ceil(3 + (hi - lo) * (np.abs(x).max() + source.beam.reach(1e-3) + m.thickness) / 4)
