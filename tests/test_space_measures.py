@@ -279,7 +279,7 @@ def test_dimensions_and_labels():
         ({"beam": bp.Piston(0.05)}, "beam: expected a sharp edge in front of the near face"),
         (
             {"beam": bp.Slits(0.01, 0.04, 2, -0.1)},
-            "beam: expected a GaussianBeam, Piston, Bowl, SourcePlane or Array in",
+            "beam: expected one GaussianBeam, Piston, Bowl, SourcePlane or Array in",
         ),
         ({"window": -1.0}, "window: expected"),
         ({"azimuth": "north"}, "azimuth: expected"),

@@ -288,7 +288,7 @@ def test_an_azimuth_makes_it_three_dimensional():
         ({"beam": bp.GaussianBeam(0.1, form="rotated")}, "form: expected 'launch'"),
         (
             {"beam": bp.Slits(0.01, 0.04, 2, -0.1)},
-            "beam: expected a GaussianBeam, Piston, Bowl, SourcePlane or Array in",
+            "beam: expected one GaussianBeam, Piston, Bowl, SourcePlane or Array in",
         ),
         ({"slab": bp.lmmd_emt_slab(LOSSY)}, "density_x: expected none, or density"),
         ({"beam": TRANSDUCERS["piston"], "angle": 10.0}, "angle: expected 0 with a Piston"),
