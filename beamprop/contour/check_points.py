@@ -63,23 +63,34 @@ class Checks(NamedTuple):
     dark: np.ndarray | None
 
 
-def check_points(
-    x: np.ndarray, z: np.ndarray, centre: float, source: float, thickness: float, many: bool = False
-) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and planes for a comparison: the ends, the slab's faces, places between, and the source's width about its middle.
+#: Wavelengths from a face at which planes are compared too, a plain choice: what is evanescent comes and goes there within about one.
+BESIDE_FACES = (-1.0, -0.25, 0.0, 0.25, 1.0)
 
-    For `many` interpolated beams half as many positions, since neighbouring beams complement each other. Their numbers are a plain
+
+def check_planes(z: np.ndarray, thickness: float, wavelength: float) -> np.ndarray:
+    """Planes for a comparison: the ends and places between, and those next to the slab's faces, and within a wavelength of them."""
+    zs = np.sort(z)
+    spread = np.linspace(0, zs.size - 1, 7).round().astype(int)
+    faces = np.array([0.0, thickness])
+    wanted = np.add.outer(faces, wavelength * np.array(BESIDE_FACES)).ravel()
+    nearest = np.argmin(np.abs(zs[:, None] - wanted), axis=0)
+    behind = np.searchsorted(zs, faces)
+    picked = np.concatenate([spread, nearest, behind - 1, behind, behind + 1])
+    return np.unique(zs[np.clip(picked, 0, zs.size - 1)])
+
+
+def check_positions(x: np.ndarray, centre: float, source: float, many: bool = False) -> np.ndarray:
+    """Positions for a comparison: the ends, places between, and the source's width about its middle.
+
+    For `many` interpolated beams half as many, since neighbouring beams complement each other. Their numbers are a plain
     choice: each position costs a column of two sums, and `error.MARGIN` covers larger differences between them.
     """
     picked, around = (17, 19) if many else (31, 41)
-    zs = np.sort(z)
-    pick = zs[np.unique(np.linspace(0, zs.size - 1, 7).round().astype(int))]
-    near = [zs[np.argmin(np.abs(zs - face))] for face in (0.0, thickness)]
     xs = np.sort(x)
     xs = xs[np.unique(np.linspace(0, xs.size - 1, picked).round().astype(int))]
     ends = _towards_ends(x, xs, source)
     own = centre + source * np.linspace(-1, 1, around // 4 if ends.size else around)
-    return np.concatenate([xs, own, ends]), np.unique([*pick, *near])
+    return np.concatenate([xs, own, ends])
 
 
 def _towards_ends(x: np.ndarray, picked: np.ndarray, source: float) -> np.ndarray:

@@ -42,7 +42,8 @@ def choose_contour(
     """
     extent = _extent(s, sources, x, z, rtol)
     many = sources.weights is not None and sources.requested.size > ESTIMATED
-    points, planes = check_points.check_points(x, z, sources.beam.centre, extent.source, s.thickness, many)
+    points = check_points.check_positions(x, sources.beam.centre, extent.source, many)
+    planes = check_points.check_planes(z, s.thickness, 2 * math.pi / s.k0)
     if z.size > planes.size:
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
     seen = survey(s, sources, transfer, points, planes, extent, rtol)

@@ -42,7 +42,7 @@ def choose_in_space(
         )
     sheet = _sheet(sources, s.k0, grid)
     extent = _extent(s, sources, sheet, z, rtol)
-    _, planes = check_points.check_points(grid[0], z, 0.0, extent.source, s.thickness)
+    planes = check_points.check_planes(z, s.thickness, 2 * math.pi / s.k0)
     if z.size > planes.size:
         planes = np.union1d(planes, check_points.darkest_planes(sources, s.k0, transfer, z))
     noise, sharp, rays, _ = survey.rounding_and_rays(s, sources, transfer, planes, extent, rtol)
