@@ -119,7 +119,11 @@ def test_every_class_is_drawn_and_fluids_keep_their_numbers():
     assert {misplaced.is_lossless(m) for m in media} == {True, False}
 
 
-@pytest.mark.parametrize("number", QUICK)
+#: Of lattices: one off by twice rtol on the first plane behind its face, and samples whose rounding passes a band beyond the contour's end.
+ONCE_TOO_SURE = [SOLIDS_FROM + 565, SOLIDS_FROM + 45]
+
+
+@pytest.mark.parametrize("number", [*QUICK, *ONCE_TOO_SURE])
 def test_cases_keep_rtol(number):
     """No error above rtol without a warning; no estimate below a third of the error."""
     row = accuracy.compare_with_truth(number)

@@ -186,7 +186,7 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
         end, first_end = (_of_requested(sources, _beyond(contour)) for contour in (second, first))
     if extremes.size:  # thrice, for five angles may miss the largest error
         interpolation = 3 * np.max(np.abs(themselves - a[extremes]), axis=(0, 2))
-    source = _source_rounding(checks.k0, sources, first)
+    source = np.fmax(_source_rounding(checks.k0, sources, first), _rounding_beyond(checks, first.contour))
     apart, source, cut, interpolation = (
         MARGIN * _on_seen(v / scale, seen) for v in (apart, source, cut, interpolation)
     )
@@ -241,6 +241,27 @@ def _source_rounding(k0: float, sources: AngleInterpolation, first: Sampled) -> 
             with np.errstate(over="ignore", invalid="ignore"):
                 bounds.append(np.fmin(h @ (weight * coherent), np.sqrt(h**2 @ (weight * white**2))))
     return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # of 1e4 normal deviates the largest is 4
+
+
+#: Wavenumbers at which noise beyond the end of a contour is counted: a plain choice, 3 % from sixty times as many for a lattice's pass band.
+BEYOND = 64
+
+
+def _rounding_beyond(checks: Checks, contour: Contour) -> np.ndarray:
+    """The same on each plane, (Z,), by plane waves between the contour's end and those of the spectra: rounding of the samples' values.
+
+    A slab that lets through next to nothing of a beam may have a pass band there.
+    """
+    sources, k0, end = checks.sources, checks.k0, contour.k[int(np.argmax(contour.k.real))]
+    step = (float(np.max(sources.spectrum_ends(k0), initial=0.0)) - end.real) / BEYOND
+    noises: Any = [getattr(sources.at(float(a)), "rounding_of_values", None) for a in (sources.angles[[0, -1]])]
+    if contour.closed or step <= 0 or None in noises:
+        return np.zeros(checks.z.size)
+    k = end + step * (np.arange(BEYOND) + 0.5)
+    noise = np.max([of(side * k, k0) for of in noises for side in (1, -1)], axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        size = np.sqrt(np.abs(checks.transfer(k, checks.z)) ** 2 @ (step / np.pi * noise**2))
+    return 4 * np.nan_to_num(size, posinf=0.0)
 
 
 def _beyond(end: Sampled) -> np.ndarray:

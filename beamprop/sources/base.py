@@ -31,7 +31,8 @@ class Beam(Protocol):
       that fields at many angles may be interpolated from those at fewer.
     * ``moved_to_origin()``: the same source about x = 0; without it, a source stays where it is.
     * ``spectrum_ends(k0)``: the interval of kx at whose ends the spectrum is cut off, whatever its value there.
-    * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`.
+    * ``spectral_rounding(kx, k0)``: what rounding of its samples leaves unknown of S, see `Profile.spectral_rounding`;
+      ``rounding_of_values(kx, k0)``: the part of it that its samples' values bring, up to the ends of the spectrum.
     * ``launch_width``: the width of its profile, by its own ``width_of``, where it is known exactly.
     * ``width_of``: "pressure" or "intensity", the definition of its width; "pressure" without it.
     """

@@ -39,6 +39,12 @@ class LateralGradient:
         rounding = getattr(self.beam, "spectral_rounding", None)
         return None if rounding is None else lambda kx, k0: tuple(np.abs(kx) * part for part in rounding(kx, k0))
 
+    @property
+    def rounding_of_values(self) -> Callable[[np.ndarray, float], np.ndarray] | None:
+        """The same of the values of its samples alone."""
+        rounding = getattr(self.beam, "rounding_of_values", None)
+        return None if rounding is None else lambda kx, k0: np.abs(kx) * rounding(kx, k0)
+
     def band(self, k0: float, tolerance: float) -> tuple[float, float]:
         """Interval of real kx outside which |kx S| is below tolerance times its largest value, about [rad/m].
 

@@ -203,6 +203,14 @@ class Profile(Tilted):
         eps, dx = np.finfo(float).eps, self.spacing
         return eps * dx * (moments[0] + k * moments[1]), eps * math.sqrt(dx) * (largest[0] + k * largest[1])
 
+    def rounding_of_values(self, kx: np.ndarray, k0: float) -> np.ndarray:
+        """What rounding of the samples p_j alone adds to S(kx), as white noise up to the Nyquist wavenumber [Pa m^(1/2)].
+
+        Each errs by up to EPS/2 |p_j|, evenly: EPS |p_j|/(2 sqrt(3)), root mean square. Samples thus have a spectrum far beyond that of their profile.
+        """
+        noise = np.finfo(float).eps / (2 * math.sqrt(3)) * math.sqrt(self.spacing) * np.max(np.abs(self.p))
+        return np.full(np.shape(kx), noise)
+
     def shifts_smoothly(self, tolerance: float) -> bool:
         """Whether the samples' spectrum has vanished where it ends, at the Nyquist wavenumber."""
         lo, hi = self.band(0.0, tolerance)

@@ -152,6 +152,13 @@ class SourceSum(Summable):
 
         return rounding if pairs else None
 
+    @property
+    def rounding_of_values(self) -> Callable[[np.ndarray, float], np.ndarray] | None:
+        """The same of the values of their samples alone."""
+        pairs: list[Any] = [(s, abs(w)) for s, w in zip(self.sources, self.weights, strict=True)]
+        pairs = [(s, w) for s, w in pairs if hasattr(s, "rounding_of_values")]
+        return (lambda kx, k0: np.asarray(sum(w * s.rounding_of_values(kx, k0) for s, w in pairs))) if pairs else None
+
 
 def _weight(value: Any) -> complex:
     weight = validate.as_complex(value, "weights", "finite numbers")
