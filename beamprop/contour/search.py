@@ -24,7 +24,7 @@ MOST_PLANE_WAVES = 200_000
 MOST_CUT = 8
 #: From this many plane waves on a band begins at the beam's own plane waves: on contours with fewer, those nearer to the normal cost less
 #: than the response that shows whether they matter.
-MANY_PLANE_WAVES = 20_000
+MANY_PLANE_WAVES = 200
 #: Tolerance over rtol with which the ends of spectra and bands are determined: none of these shows in an error of rtol.
 BELOW_RTOL = 1e-3
 
