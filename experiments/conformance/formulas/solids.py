@@ -16,6 +16,12 @@ def rayleigh_of_poisson_solid() -> float:
     return math.sqrt(2 - 2 / math.sqrt(3))
 
 
+def rayleigh(solid: Solid) -> float:
+    """Rayleigh's wave: x = (c/cT)^2 of x^3 - 8 x^2 + (24 - 16 m) x - 16 (1 - m) = 0, m = (cT/cL)^2 (Rayleigh 1885)."""
+    m = (solid[2] / solid[1]) ** 2
+    return solid[2] * math.sqrt(bisect(lambda x: x**3 - 8 * x**2 + (24 - 16 * m) * x - 16 * (1 - m), 0.0, 1.0))
+
+
 def loaded_face(slowness: complex, solid: Solid, fluid: tuple[float, float], leaky: bool) -> complex:
     """0 for the wave of the face of a solid below a fluid: (2 s^2 - t^2)^2 - 4 s^2 A B + (rho_f/rho) t^4 A/F = 0.
 

@@ -17,6 +17,9 @@ SOLIDS = {"steel": (7900.0, 5900.0, 3200.0), "aluminium": (2700.0, 6320.0, 3130.
 ACRYLIC = (1180.0, 2700.0, 1340.0)
 FREQUENCY = 1e6
 LOAD = next_term(10 * NOTHING[0] / 2000.0)
+AIR = (1.2, 343.0)
+#: Solids of the package's table whose leaky Rayleigh wave is much faster than sound in water.
+TABLE = ("aluminium", "brass", "copper", "fused silica", "steel", "titanium", "tungsten")
 
 
 def kx_of(solid: tuple, fluid: tuple, fd: float = 0.0, end: float = 1.5, strip: float = 0.02) -> list[complex]:
@@ -61,6 +64,40 @@ def of_faces() -> list[Row]:
     return out
 
 
+def of_ratios() -> list[Row]:
+    """Rayleigh's wave of solids whose cubic has a root in closed form, or one of their own."""
+    out = []
+    for name, ratio, exact in (
+        ("Poisson's ratio 0", math.sqrt(2), math.sqrt(3 - math.sqrt(5))),
+        ("Poisson's ratio 0.4", math.sqrt(6), solids.rayleigh((1.0, math.sqrt(6), 1.0))),
+        ("cL = 100 cT", 100.0, solids.rayleigh((1.0, 100.0, 1.0))),
+    ):
+        ours = nearest(kx_of((2500.0, 3000.0 * ratio, 3000.0), NOTHING, end=1.01), 1 / exact / 3000.0)
+        out.append(
+            Row(f"Rayleigh's wave over shear waves, {name}", "Rayleigh 1885", (1 / ours / 3000.0).real, exact, LOAD)
+        )
+    return out
+
+
+def of_angles() -> list[Row]:
+    """Rayleigh angles: below water by the loaded face, below air by the free one, which air changes in second order."""
+    out = []
+    for name in TABLE:
+        listed = bp.materials()[name]
+        solid = (listed.density, listed.sound_speed, listed.shear_speed)
+        for around, fluid in (("water", WATER), ("air", AIR)):
+            ours = bp.rayleigh_angle(bp.Fluid.from_speed(*fluid), bp.Solid(*solid))
+            leaky = solids.leaky_rayleigh(solid, fluid)
+            free = 1 / solids.rayleigh(solid)
+            air = fluid is AIR
+            sine = fluid[1] * (free if air else leaky.real)
+            tolerance = next_term(10 * (leaky.imag / leaky.real) ** 2) if air else rounding(10)
+            row = f"Rayleigh angle (degree) of {name} in {around}"
+            source = "Rayleigh 1885" if air else "Viktorov 1967"
+            out.append(Row(row, source, ours, math.degrees(math.asin(sine)), tolerance))
+    return out
+
+
 def of_plates() -> list[Row]:
     """Lamb waves of free plates, and a plate so thin that one is left."""
     out = []
@@ -95,12 +132,13 @@ def of_brass() -> list[Row]:
 
 def rows() -> list[Row]:
     """Faces, plates, and a published spectrum."""
-    return of_faces() + of_plates() + of_brass()
+    return of_faces() + of_ratios() + of_angles() + of_plates() + of_brass()
 
 
 SECTION = Section(
     "Solids",
     "Waves along faces and plates of solids, by the textbook's equations and as printed. Free solids are those in a fluid of 1e-5 kg/m3. "
+    "Rayleigh angles are those of the package's table of materials. "
     "The spectrum of a brass plate is that of `experiments/conformance/published.py`, and is found complete.",
     rows,
 )
