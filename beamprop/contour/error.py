@@ -1,7 +1,7 @@
 """The error of a field on a contour, estimated by a second contour of other parameters.
 
 Their difference at the points of `check_points` is the error of the coarser contour. Errors that both contours share are added: the
-end of the band, and a spectrum that ends inside a contour. The second contour's response is evaluated at kx and w moved in their
+end of the band, and a spectrum that ends inside a contour. The second contour's response is evaluated at kx, w and z moved in their
 last bits, so that its rounding shows in the difference too. Errors are over the largest |p| of the plane, which may lie far from
 the requested positions: it is looked for where the beam lands, too.
 
