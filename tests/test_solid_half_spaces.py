@@ -189,6 +189,18 @@ def test_the_angle_of_leaky_rayleigh_waves():
         bp.rayleigh_angle(WATER, bp.Solid(1180.0, 2700.0, 1340.0))
 
 
+def test_the_rayleigh_angle_of_a_gas_too_light_to_load_the_face():
+    """The pole lies on the real axis to rounding: the root of Rayleigh's cubic in (c/cT)^2, x^3 - 8 x^2 + (24 - 16 q) x - 16 (1 - q)."""
+    c_l, c_t, c = 5960.0, 3235.0, 343.0
+    q = (c_t / c_l) ** 2
+    roots = np.roots([1, -8, 24 - 16 * q, -16 * (1 - q)])
+    x = next(r.real for r in roots if abs(r.imag) < 1e-9 and 0 < r.real < 1)
+    gas = bp.Fluid.from_speed(1e-5, c)
+    assert bp.rayleigh_angle(gas, bp.Solid(7850.0, c_l, c_t)) == pytest.approx(
+        np.degrees(np.arcsin(c / (c_t * np.sqrt(x)))), rel=1e-9
+    )
+
+
 def test_intensity_is_refused_in_solids():
     """p v lacks the part of the shear stress."""
     said = r"variables: expected an intensity at z in fluids .*got z = 0.0001 in a solid; power_through is"

@@ -23,7 +23,9 @@ def dataset(rows):
 
 
 def test_cases_keep_rtol():
-    rows = [in_space.compare_in_space(number) for number in (4, 16, 429)]  # of the last one rounding of z is what is seen
+    rows = [
+        in_space.compare_in_space(number) for number in (4, 16, 429)
+    ]  # of the last one rounding of z is what is seen
     for row in rows:
         assert row["status"] == "answered"
         assert row["error"] < row["rtol"]

@@ -52,7 +52,7 @@ def rayleigh_angle(fluid: Fluid, solid: Solid, frequency: float = 1e6) -> float:
     if shear < 1:
         modes = guided_modes(Slab.interface(fluid, solid), f, kx_over_k0_max=1.5, strip_over_k0=STRIP, leaky=True)
         k = modes.kx_over_k0.values
-        leaky = k[(k.real > shear) & (k.real < 1) & (k.imag > 0)]
+        leaky = k[(k.real > shear) & (k.real < 1) & (k.imag >= 0)]
     if shear >= 1 or not leaky.size:
         expected = (
             "one with a leaky Rayleigh wave in the fluid, faster than sound in it and slower than its own shear wave"
