@@ -7,7 +7,7 @@ import pytest
 from worse_contours import with_larger_errors
 
 import beamprop as bp
-from beamprop.contour import bent, check_points, error, in_stretches, paths, stretches
+from beamprop.contour import bent, check_points, error, in_stretches, paths, stretches, summed
 
 RTOL = 1e-8
 PLAN = paths.BentPlan(depth=2.0, window=10.0, band=100.0, bend=50.0)
@@ -41,6 +41,29 @@ def test_the_worse_of_two_budgets():
         assert worse.total.tolist() == [1e-3]
     unknown = error.uniform_budget(1, math.nan)
     assert unknown.worse(small).total.tolist() == small.worse(unknown).total.tolist() == [2e-9]
+
+
+def test_errors_of_a_sum_are_added_over_its_largest():
+    """On the worst plane; what it is smaller by than each of its fields counts as their cancelling."""
+    budgets = [budget(difference=[1e-9, 0.0]), budget(difference=[2e-9, 0.0], band_end=[0.0, 1e-9])]
+    of_fields = np.array([[[1.0, 3.0], [1.0, 1.0]], [[2.0, 3.0], [1.0, 1.0]]])  # (fields, beams, planes)
+    of_sum = np.array([[3.0, 0.1], [4.0, 4.0]])
+    total = summed.added(budgets, summed.Scales(of_sum, of_fields))
+    assert total.total == pytest.approx([9e-9 / 0.1, 1e-9 / 4])
+    assert total.difference == pytest.approx([3e-9, 0.0])
+    assert total.band_end == pytest.approx([0.0, 1e-9 / 4])
+    assert total.cancelling == pytest.approx([9e-9 / 0.1 - 3e-9, 0.0])
+    assert total.largest == "sources of the sum that cancel each other"
+    nothing = summed.added([budget(), budget()], summed.Scales(0 * of_sum, 0 * of_fields))
+    assert nothing.total.tolist() == [0.0, 0.0]
+
+
+def test_a_lower_rtol_is_a_share_of_what_was_missed():
+    assert summed.closer(1e-9, 1e-8, 1e-8) is None
+    assert summed.closer(math.nan, 1e-8, 1e-8) is None
+    assert summed.closer(1e-7, 1e-8, 1e-8) == pytest.approx(3e-10)
+    assert summed.closer(1.0, 1e-8, 1e-8) == summed.LEAST
+    assert summed.closer(1.0, 1e-8, summed.LEAST) is None
 
 
 def test_beams_between_take_the_terms_of_the_worse_neighbour():

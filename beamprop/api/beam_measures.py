@@ -42,7 +42,7 @@ def beam_measures(
     ----------
     slab : Slab
     beam : GaussianBeam, Profile or Slits
-        In three dimensions a GaussianBeam, Piston, Bowl, SourcePlane or Array.
+        In three dimensions a GaussianBeam, Piston, Bowl, SourcePlane or Array. Also a sum of these, ``a + 0.5j * b``.
     frequency : float or 1-D array, Hz
     angle : float or 1-D array, degree, optional
         Overrides the beam's.
@@ -83,7 +83,8 @@ def beam_measures(
         from the normal. Beside them are `far_azimuth` [degree], `area` [m^2], the connected part around the peak where |p| is half of it
         or more, `ellipticity`, the smaller over the larger width by second moments along their principal axes (as in ISO 11146), and
         `orientation` [degree], the direction of the larger. Second moments are taken over the connected part around the peak where |p| exceeds
-        a hundredth of it, or over the `window` on both axes, a square.
+        a hundredth of it, or over the `window` on both axes, a square. The geometric ray of a sum starts in the middle
+        of its sources, along the angle that they share or else the normal; `power` has their terms of interference.
 
     Warns
     -----

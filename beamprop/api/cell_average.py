@@ -11,6 +11,7 @@ import numpy as np
 from ..contour.error import DARK, ErrorBudget
 from ..fields.in_space import SpaceQuestion
 from ..fields.question import FieldQuestion
+from ..fields.sum_in_space import SumQuestion
 from ..media.planes import CellMeans, cell_means
 from .field_variables import Row, kinds, row_of
 
@@ -70,7 +71,7 @@ class AveragedRow(NamedTuple):
 
 
 def averaged_row(
-    question: FieldQuestion | SpaceQuestion, i: int, variables: tuple[str, ...], average: str | None
+    question: FieldQuestion | SpaceQuestion | SumQuestion, i: int, variables: tuple[str, ...], average: str | None
 ) -> Row | AveragedRow:
     """The contours at frequency i, of the planes themselves or of the means over a cell."""
     on_map = tuple(kinds(variables))

@@ -14,11 +14,9 @@ from ..fields.question import FieldQuestion
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
-from ..sources.source_sum import SourceSum
 from . import checks
 from .cell_average import averaged_row
 from .field_in_space import question_at
-from .field_of_sum import field_of_sum, refuse_options
 from .field_question import labelled
 from .field_variables import bytes_held, kinds, no_errors, of_component, powers
 
@@ -126,12 +124,9 @@ def field(
     validate.flag_or_function(progress, "progress")
     variables = of_component(component, variables)
     places, values_of, sides = (x, y, z, azimuth), (variables, average), (boundary, period)
-    if y is not None and isinstance(beam, SourceSum):
-        refuse_options(*sides, *values_of)
-        return field_of_sum(slab, beam, frequency, angle, rtol, places, progress)
     question, labels = question_at(places, slab, beam, (frequency, angle), sides, rtol, values_of)
     names, shape = labels.variables, question.shape
-    memory.check_field((*shape[:3], math.prod(shape[3:])), values=bytes_held(names))
+    memory.check_field((*shape[:3], math.prod(shape[3:])), values=bytes_held(names, question))
     values: dict[str, np.ndarray] = {name: np.empty(shape, kind) for name, kind in kinds(names).items()}
     errors = no_errors(names, shape)
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):

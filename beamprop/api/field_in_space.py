@@ -11,11 +11,13 @@ from .. import validate
 from ..contour import sums
 from ..fields.in_space import SpaceQuestion
 from ..fields.question import FieldQuestion
+from ..fields.sum_in_space import SumQuestion
 from ..media.fluids import Fluid
 from ..media.planes import warn_of_stripes
 from ..media.structures import Layer, Slab
 from ..sources.base import Beam
 from ..sources.source_sum import SourceSum
+from ..sources.sum_in_space import in_space, middle_of
 from . import checks, hints
 from .field_question import Labels, checked_question
 from .field_variables import IN_SPACE, checked_variables
@@ -32,7 +34,7 @@ def question_at(
     sides: tuple[str, Any],
     rtol: float,
     values: tuple[Any, str | None],
-) -> tuple[FieldQuestion | SpaceQuestion, Labels]:
+) -> tuple[FieldQuestion | SpaceQuestion | SumQuestion, Labels]:
     """The question of a field, or a ValueError that names the argument.
 
     Parameters
@@ -49,10 +51,11 @@ def question_at(
         if azimuth is not None:
             raise validate.refuse("azimuth", "none without y", azimuth)
         return checked_question(slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average)
-    question, labels = question_in_space(slab, beam, frequency, angle, rtol, places)
+    in_three = _question_of_sum if isinstance(beam, SourceSum) else question_in_space
+    question, labels = in_three(slab, beam, frequency, angle, rtol, places)
     validate.word(boundary, "boundary", "open", "periodic")
     if boundary == "periodic":
-        period = _lengths(period, question)
+        period = _lengths(period, labels.axes, in_space(beam, azimuth))
     elif period is not None:
         raise validate.refuse("period", "none with boundary='open'", period)
     if average is not None:
@@ -70,10 +73,7 @@ def question_in_space(
     """The question of an open field of p at `places`, x, y, z and the azimuth or None, or a ValueError that names the argument."""
     beams = checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     x, y, z = (validate.axis(v, name) for v, name in zip(places, "xyz", strict=False))
-    in_space: Any = getattr(beam, "in_space", None)
-    if in_space is None and isinstance(beam, SourceSum):
-        raise validate.refuse("beam", "one source where y is given: of a sum only field(y=) is available yet", beam)
-    if in_space is None:
+    if not hasattr(beam, "in_space"):
         raise validate.refuse("beam", "a GaussianBeam, Piston, Bowl, SourcePlane or Array where y is given", beam)
     source_beam: Any = beam
     azimuth = source_beam.azimuth if places[3] is None else validate.as_number(places[3], "azimuth")
@@ -85,24 +85,43 @@ def question_in_space(
         beam, np.max(checks.k0(slab, frequencies)), min(float(np.min(z)), 0.0) - beam.z0, beams.rtol
     )
     flat_z, flat_y, flat_x = np.atleast_1d(z), np.atleast_1d(y) - source_beam.y0, np.atleast_1d(x) - source_beam.x0
-    question = SpaceQuestion(slab, in_space(azimuth), frequencies, angles, flat_z, flat_y, flat_x, beams.rtol)
+    question = SpaceQuestion(
+        slab, source_beam.in_space(azimuth), frequencies, angles, flat_z, flat_y, flat_x, beams.rtol
+    )
     axes = beams.axes | {"z": z, "y": y, "x": x}
     return question, Labels(axes, slab, beam, "open", None, beams.rtol, ("p",), azimuth=azimuth)
 
 
-def _lengths(period: Any, question: SpaceQuestion) -> tuple[float, float]:
+def _question_of_sum(
+    slab: Slab, beam: Any, frequency: Any, angle: Any, rtol: float, places: tuple[Any, Any, Any, Any]
+) -> tuple[SumQuestion, Labels]:
+    """The same of a sum: the question of each of its sources, at angles of their own where none is given."""
+    checks.unmoved_beams(slab, beam, frequency, angle, rtol)
+    questions, labels = zip(
+        *(question_in_space(slab, source, frequency, angle, rtol, places) for source in beam.sources), strict=True
+    )
+    first = labels[0]
+    azimuth = beam.azimuth if places[3] is None else first.azimuth
+    angles = first.axes["angle"] if angle is not None else np.asarray(beam.angle)
+    middles = tuple(middle_of(source) for source in beam.sources)
+    question = SumQuestion(questions, beam.weights, middles, questions[0].z, first.rtol)
+    return question, first._replace(beam=beam, azimuth=azimuth, axes=first.axes | {"angle": angles})
+
+
+def _lengths(period: Any, axes: dict[str, np.ndarray], source: Any) -> tuple[float, float]:
     """The lattice's lengths along x and y; refused where neighbouring beams overlap."""
     if period is None:
-        grids = [sums.grid_of(v) for v in (question.x, question.y)]
+        x, y = (np.atleast_1d(axes[name]) for name in "xy")
+        grids = [sums.grid_of(v) for v in (x, y)]
         if not all(grid.step for grid in grids):
             raise ValueError(
                 "period: expected two lengths (Lx, Ly) [m] with boundary='periodic' and an uneven x or y, got None"
             )
-        period = tuple(grid.step * v.size for grid, v in zip(grids, (question.x, question.y), strict=True))
+        period = tuple(grid.step * v.size for grid, v in zip(grids, (x, y), strict=True))
     if not isinstance(period, tuple | list | np.ndarray) or len(period) != 2:
         raise validate.refuse("period", "two lengths (Lx, Ly) [m] where y is given", period)
     lengths = tuple(validate.as_number(v, "period", positive=True) for v in period)
-    for axis, length, half in zip("xy", lengths, question.source.half_widths(SEAM), strict=True):
+    for axis, length, half in zip("xy", lengths, source.half_widths(SEAM), strict=True):
         if half > length / 2:
             raise ValueError(
                 f"period: expected a grid wide enough for the beam, got {length:.6g} m along {axis}, at whose ends the launched |p| is "

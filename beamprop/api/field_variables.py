@@ -11,6 +11,7 @@ from .. import validate
 from ..contour.error import ErrorBudget, uniform_budget
 from ..fields.in_space import PreparedInSpace, SpaceQuestion
 from ..fields.question import FieldQuestion, Prepared
+from ..fields.sum_in_space import PreparedSum, SumQuestion
 from ..media.solid_runs import has_solids, in_solid
 from ..media.structures import Slab
 from ..profiles.plane_power import power_through_planes
@@ -70,7 +71,7 @@ class Row(NamedTuple):
     """A question at one frequency: what is to be filled, and the contour of each quantity that is summed for it."""
 
     variables: tuple[str, ...]  #: those on (z, x)
-    prepared: dict[str, Prepared | PreparedInSpace]
+    prepared: dict[str, Prepared | PreparedInSpace | PreparedSum]
     omega: float
 
     def fill(self, planes: slice, angles: slice, out: dict[str, np.ndarray]) -> dict[str, ErrorBudget]:
@@ -102,7 +103,7 @@ def _summed_for(variable: str) -> tuple[str, ...]:
     return ("p", INTENSITY[variable]) if variable in INTENSITY else (DISPLACEMENT.get(variable, variable),)
 
 
-def row_of(question: FieldQuestion | SpaceQuestion, i: int, variables: tuple[str, ...]) -> Row:
+def row_of(question: FieldQuestion | SpaceQuestion | SumQuestion, i: int, variables: tuple[str, ...]) -> Row:
     """The contours at frequency i; both factors of an intensity keep half its rtol."""
     on_map = tuple(v for v in variables if v != "power_through")
     wanted = {q for v in on_map for q in _summed_for(v)}
@@ -119,11 +120,16 @@ def kinds(variables: tuple[str, ...]) -> dict[str, type]:
     return {v: float if v in INTENSITY else complex for v in variables if v != "power_through"}
 
 
-def bytes_held(variables: tuple[str, ...]) -> tuple[int, int]:
-    """Bytes of all variables of a point on (z, x), and of what is summed for them and not kept."""
+def bytes_held(variables: tuple[str, ...], question: FieldQuestion | SpaceQuestion | SumQuestion) -> tuple[int, int]:
+    """Bytes of all variables of a point on (z, x), and of what is summed for them and not kept.
+
+    Of a sum of sources the field of one of them is held, too.
+    """
     kept = kinds(variables)
     summed = {q for v in kept for q in _summed_for(v)}
-    return sum(np.dtype(kind).itemsize for kind in kept.values()), 16 * len(summed - set(kept))
+    return sum(np.dtype(kind).itemsize for kind in kept.values()), 16 * (
+        len(summed - set(kept)) + isinstance(question, SumQuestion)
+    )
 
 
 class Errors(NamedTuple):

@@ -95,7 +95,7 @@ def save_field(
     places, values_of, sides = (x, y, z, azimuth), (variables, average), (boundary, period)
     question, labels = question_at(places, slab, beam, (frequency, angle), sides, rtol, values_of)
     shape, dims, pick, names = question.shape, labels.dims, labels.pick, labels.variables
-    values, each = kinds(names), bytes_held(names)
+    values, each = kinds(names), bytes_held(names, question)
     check_field((*shape[:3], math.prod(shape[3:])), in_file=True, values=each)
     memory = validate.as_number(memory, "memory", positive=True)
     block, chunk = _block(shape, memory, sum(each))

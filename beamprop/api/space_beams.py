@@ -24,6 +24,8 @@ from ..progress import Progress, watched
 from ..response.sampled_slab import sample
 from ..sources.base import Beam
 from ..sources.in_space import has_edge, needs_y
+from ..sources.source_sum import SourceSum
+from ..sources.sum_in_space import in_space, middle_of
 from . import checks, hints
 from .field_in_space import refuse_directions
 
@@ -39,10 +41,11 @@ class SpaceBeams(NamedTuple):
     beams: checks.Beams
     azimuth: float
     origin: np.ndarray  #: the beam's middle, (2,) m
+    given: float | None  #: the azimuth that overrides the beam's, or those of a sum's sources
 
     def at_angle(self, angle: float) -> Any:
         """The beam about the origin, at an angle."""
-        return self.beam.at_angle(angle).in_space(self.azimuth)
+        return in_space(self.beam.at_angle(angle), self.given)
 
     def labelled(
         self, table: Mapping[str, tuple[tuple[str, ...], np.ndarray]], question: str, **settings: Any
@@ -68,18 +71,20 @@ def space_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float,
     """The arguments checked, or a ValueError that names the wrong one."""
     beams = checks.unmoved_beams(slab, beam, frequency, angle, rtol)
     source: Any = beam
-    if not hasattr(beam, "in_space"):
-        expected = "one GaussianBeam, Piston, Bowl, SourcePlane or Array in three dimensions (of a sum, field alone is available yet)"
+    each: Any = beam.sources if isinstance(beam, SourceSum) else (beam,)
+    if not all(hasattr(single, "in_space") for single in each):
+        expected = "one GaussianBeam, Piston, Bowl, SourcePlane or Array in three dimensions, or a sum of these"
         raise validate.refuse("beam", expected, beam)
-    azimuth = source.azimuth if azimuth is None else validate.as_number(azimuth, "azimuth")
-    source.in_space(azimuth)  # refuses the form that is not known there
+    given = None if azimuth is None else validate.as_number(azimuth, "azimuth")
+    about_origin = in_space(beam, given)  # refuses the form that is not known there
     for value in beams.flat[1]:
         source.at_angle(float(value))
-    if source.z0 == 0 and has_edge(source.in_space(azimuth)):
+    if source.z0 == 0 and has_edge(about_origin):
         raise validate.refuse("beam", "a sharp edge in front of the near face, whose z is 0", beam)
     refuse_directions(slab, beams.flat[0])
-    checks.warn_if_not_ended(beam, np.max(checks.k0(slab, beams.flat[0])), -beam.z0, beams.rtol)
-    return SpaceBeams(slab, beam, beams, azimuth, np.array([source.x0, source.y0]))
+    for single in each:
+        checks.warn_if_not_ended(single, np.max(checks.k0(slab, beams.flat[0])), -beam.z0, beams.rtol)
+    return SpaceBeams(slab, beam, beams, about_origin.azimuth if given is None else given, middle_of(beam), given)
 
 
 def widths_in_space(question: SpaceBeams, air_distance: float | None, progress: Progress) -> xr.Dataset:
@@ -105,7 +110,9 @@ def widths_in_space(question: SpaceBeams, air_distance: float | None, progress: 
     table["centroid_out"] += question.origin
     checks.warn_if_inaccurate(worst, beams.rtol)
     _warn_of_corners(corners, beams.rtol)
-    _warn_of_missing(table, "no half level inside the window")
+    left_open = isinstance(question.beam, SourceSum) and has_edge(in_space(question.beam, question.given))
+    missed = {name: values for name, values in table.items() if not (left_open and name == "fwhm_launch")}
+    _warn_of_missing(missed, "no half level inside the window")
     checks.warn_of_crossings(
         int(most.max()), ", ".join(n for n, times in zip(names, most.max(axis=1), strict=False) if times > 2)
     )

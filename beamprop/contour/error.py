@@ -45,6 +45,7 @@ class ErrorBudget(NamedTuple):
     band_end: np.ndarray  #: plane waves beyond the end of the contour
     long_phases: np.ndarray  #: rounding of k0 and of lengths, shared by both contours
     low_rank: np.ndarray  #: of planes that are combinations of other planes
+    cancelling: np.ndarray  #: of sources of a sum that cancel each other
 
     @property
     def total(self) -> np.ndarray:
@@ -79,6 +80,7 @@ TERMS = {
     "band_end": "the end of the band of plane waves",
     "long_phases": "the rounding of long phases",
     "low_rank": "planes that are combinations of other planes",
+    "cancelling": "sources of the sum that cancel each other",
 }
 
 
@@ -195,7 +197,7 @@ def terms_by_plane(checks: Checks, first: Sampled, second: Sampled) -> Estimate:
     # and four of the numbers themselves
     way = across + float(np.max(checks.z)) - sources.beam.z0
     phases = np.full(largest.shape, EPS * (4 + checks.k0 * way))
-    budget = ErrorBudget(apart, source, cut, interpolation, end, phases, low_rank=zero)
+    budget = ErrorBudget(apart, source, cut, interpolation, end, phases, low_rank=zero, cancelling=zero)
     return Estimate(budget, float(np.max(np.maximum(end, first_end))))
 
 

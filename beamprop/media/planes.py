@@ -190,9 +190,8 @@ def _mean_about(plane: float, rows: list[Row], at: np.ndarray, share: np.ndarray
 # --- stripes that are not there ---------------------------------------------------------------------------
 
 
-def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray, averages: bool = True) -> None:
-    """A hint that a map's planes skip through the cells of a slab; `averages`: whether means over cells can be asked for."""
-    instead = ", or average='cell'" if averages else ""
+def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray) -> None:
+    """A hint that a map's planes skip through the cells of a slab."""
     for row in rows_of(slab):
         inside = np.unique(z[(z >= row.start) & (z <= row.stop)])
         if not row.ripples or inside.size < MAP:
@@ -208,6 +207,7 @@ def warn_of_stripes(slab: Slab, z: np.ndarray, frequency: np.ndarray, averages: 
         if ripple > SEEN:
             hint(
                 f"z: steps of {step:.3g} m skip through cells of {period:.3g} m, inside which the pressure ripples by about "
-                f"{min(ripple, 1.0):.0%} of its mean: a map shows stripes that are not there; take z=bp.faces(slab, ...){instead}"
+                f"{min(ripple, 1.0):.0%} of its mean: a map shows stripes that are not there; take z=bp.faces(slab, ...), "
+                "or average='cell'"
             )
             return

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .space_plane import Plane, Sampled
+from .space_plane import Plane, PlaneOfSum, Sampled
 
 #: Maxima of the samples of more than this share of the largest are candidates for the peak: between samples |p| rises by no more.
 CANDIDATES = 0.8
@@ -49,7 +49,7 @@ def peak_of(profile: Sampled) -> Peak:
     return Peak(reached[best], float(sizes.max()))
 
 
-def _maxima(plane: Plane, places: np.ndarray, spacing: np.ndarray) -> np.ndarray:
+def _maxima(plane: Plane | PlaneOfSum, places: np.ndarray, spacing: np.ndarray) -> np.ndarray:
     """Maxima of |p|^2 within a sample of places (P, 2)."""
     begin = places
     for _ in range(NEWTON):
@@ -127,7 +127,9 @@ def winding(loop: np.ndarray, place: np.ndarray) -> int:
     return round((turn[-1] - turn[0]) / (2 * math.pi))
 
 
-def _settled(plane: Plane, loop: np.ndarray, target: float, spacing: np.ndarray, rtol: float) -> tuple[float, float]:
+def _settled(
+    plane: Plane | PlaneOfSum, loop: np.ndarray, target: float, spacing: np.ndarray, rtol: float
+) -> tuple[float, float]:
     """The area inside a closed line once it is on the level, and its last change; negative for a line that runs clockwise."""
     area, count = math.nan, FIRST
     curve = _spaced(loop[np.append(True, np.any(np.diff(loop, axis=0), axis=1))], count, 1)
@@ -150,7 +152,7 @@ def _spaced(loop: np.ndarray, count: int, degree: int) -> np.ndarray:
     return np.asarray(spline(way[-1] * np.arange(count) / count))
 
 
-def _on_level(plane: Plane, places: np.ndarray, target: float, spacing: np.ndarray) -> np.ndarray:
+def _on_level(plane: Plane | PlaneOfSum, places: np.ndarray, target: float, spacing: np.ndarray) -> np.ndarray:
     """Places moved along the gradient onto |p| = target, by no more than half a sample a step."""
     for _ in range(NEWTON):
         p, p_x, p_y = plane.taylor(places, 1)

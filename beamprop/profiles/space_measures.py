@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,12 +15,13 @@ from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.in_space import scattered_spectrum, unit_vector
+from ..sources.sum_in_space import SumInSpace, parts_of
 from . import power
 from .level_area import Area, area_above, connected
 from .measures import Side, any_beam, carried, unchanged
 from .power import NOTHING, PowerError, Radiated
-from .space_plane import Sampled, Window, plane_of, sampled
-from .space_widths import cuts_of, profile_of, section
+from .space_plane import Sampled, Way, Window, sampled, widened
+from .space_widths import cuts_of, section
 from .windows import TAIL
 
 #: Widths of the principal axes that differ by less than this are equal, and their orientation rounding; so is the azimuth of a mean
@@ -79,32 +82,39 @@ class Measured(NamedTuple):
 def reflected_and_transmitted(s: SampledSlab, source: Any, rtol: float, window: float | None) -> list[Measured]:
     """The reflected and the transmitted beam; places are from the source's middle."""
     slope, z0 = math.tan(math.radians(source.angle)), source.z0
-    directions = Directions(source, s.k0, {})
+    directions = Directions(source, s, {})
     launched = _radiated(s, directions, Side(TransferFunction(s, unchanged), 0.0, False), rtol)
     sides = (
-        Side(transfer_function.reflected(s, z0), -z0 * slope, False),
-        Side(transfer_function.through(s, z0), (s.thickness - z0) * slope, True),
+        SpaceSide(partial(transfer_function.reflected, s), -z0 * slope, False),
+        SpaceSide(partial(transfer_function.through, s), (s.thickness - z0) * slope, True),
     )
     return [_measure(s, directions, side, launched, rtol, window) for side in sides]
 
 
+class SpaceSide(NamedTuple):
+    """As `Side`, for sources on launch planes of their own."""
+
+    transfer: Callable[[float], TransferFunction]  #: of a launch plane's z0
+    ray: float  #: where the geometric ray meets that face, from the source's middle towards its azimuth [m]
+    behind: bool
+
+
 def _measure(
-    s: SampledSlab, directions: Directions, side: Side, launched: Radiated, rtol: float, window: float | None
+    s: SampledSlab, directions: Directions, side: SpaceSide, launched: Radiated, rtol: float, window: float | None
 ) -> Measured:
     source = directions.source
-    if not any_beam(s, source, side.transfer):
+    if not any(any_beam(s, part.source, side.transfer(part.source.z0)) for part in parts_of(source)):
         return Measured(NO_BEAM, uniform_budget(1, 0.0), PowerError(), Area(0.0, 0.0))
-    way = driven_by(source, side.transfer), s.thickness
+    way = Way(side.transfer, s.thickness)
     ray = side.ray * np.array(unit_vector(source.azimuth))
     if window is None:
-        profile = profile_of(s, source, way, rtol, TAIL)
+        profile = widened(s, source, way, rtol, TAIL)
     else:
-        chosen = Window(ray, np.full(2, window))
-        profile = sampled(plane_of(s, source, *way, chosen, rtol), chosen)
+        profile = sampled(s, source, way, Window(ray, np.full(2, window)), rtol)
     half = section(profile, 0.5)
     moments = _in_part(profile) if window is None else _in_window(profile)
     area = area_above(profile, half.peak, 0.5, rtol)
-    radiated = _radiated(s, directions, side, rtol)
+    radiated = _radiated(s, directions, Side(side.transfer(source.z0), side.ray, side.behind), rtol)
     ellipticity, orientation = _principal(moments.matrix)
     divergence, far_angle, far_azimuth = _direction(radiated)
     beamlet = Beamlet(
@@ -158,7 +168,7 @@ def _in_part(profile: Sampled) -> Moments:
 def _in_window(profile: Sampled) -> Moments:
     """Over the whole window, by Gauss's rule: its ends cut off what an even grid would sum to fourth order."""
     nodes = []
-    for at, k in ((profile.x, profile.plane.kx), (profile.y, profile.plane.ky)):
+    for at, k in zip((profile.x, profile.y), profile.plane.ends, strict=True):
         g, w = np.polynomial.legendre.leggauss(BEYOND + math.ceil((at[-1] - at[0]) / 4 * np.ptp(k)))
         nodes.append(((at[0] + at[-1]) / 2 + (at[-1] - at[0]) / 2 * g, w))
     (x, of_x), (y, of_y) = nodes
@@ -198,16 +208,48 @@ class Directions(NamedTuple):
     """Means over directions of what a source sends, at |k| that both quadrature rules, sides and moved last bits share."""
 
     source: Any
-    k0: float
-    known: dict[tuple[float, float], np.ndarray]  #: by |k| and the wavenumber of the medium, (8,) each
+    slab: SampledSlab
+    known: dict[tuple[float, ...], np.ndarray]  #: by |k|, the wavenumber of the medium, and moved last bits, (8,) each
 
-    def means(self, radii: np.ndarray, k: float) -> np.ndarray:
+    @property
+    def drive(self) -> TransferFunction:
+        """What drives a source; 1 of a sum, whose sources have it in their spectra."""
+        unit = TransferFunction(self.slab, unchanged)
+        return unit if isinstance(self.source, SumInSpace) else driven_by(self.source, unit)
+
+    def means(self, radii: np.ndarray, k: float, shift: float) -> np.ndarray:
         """See `_by_direction`: (8, n)."""
-        missing = np.array([radius for radius in radii.tolist() if (radius, k) not in self.known])
+        if not isinstance(self.source, SumInSpace):  # whose rounding shows in the response alone
+            shift = 0.0
+        missing = np.array([radius for radius in radii.tolist() if (radius, k, shift) not in self.known])
         if missing.size:
-            columns = _by_direction(self.source, missing, self.k0, k).T
-            self.known.update(((radius, k), column) for radius, column in zip(missing.tolist(), columns, strict=True))
-        return np.array([self.known[radius, k] for radius in radii.tolist()]).T
+            columns = _by_direction(self, missing, k, shift).T
+            self.known.update(
+                ((radius, k, shift), column) for radius, column in zip(missing.tolist(), columns, strict=True)
+            )
+        return np.array([self.known[radius, k, shift] for radius in radii.tolist()]).T
+
+    def spectrum(self, radii: np.ndarray, turn: np.ndarray, shift: float) -> np.ndarray:
+        """S at |k| (n,) and directions (m,): (n, m).
+
+        Of a sum with what drives each source, on the plane behind which all are.
+        """
+        # where sources cancel, rounding of their spectra shows with moved last bits
+        x, y = (np.multiply.outer(radii * (1 + shift), v(turn)) for v in (np.cos, np.sin))
+        s, total = self.slab, np.zeros(x.shape, complex)
+        for part in parts_of(self.source):
+            own = scattered_spectrum(part.source, x.ravel(), y.ravel(), s.k0).reshape(x.shape)
+            if not isinstance(self.source, SumInSpace):
+                return own
+            ahead = TransferFunction(s, partial(_ahead, distance=self.source.z0 - part.source.z0))
+            driven = driven_by(part.source, ahead)(radii.astype(complex), np.zeros(1), shift)[0]
+            total += part.weight * driven[:, None] * own * np.exp(-1j * (x * part.at[0] + y * part.at[1]))
+        return total
+
+
+def _ahead(s: SampledSlab, kx: np.ndarray, z: np.ndarray, distance: float) -> np.ndarray:
+    """H over a distance in the medium in front: (1, n)."""
+    return transfer_function.over_distance(s, kx, np.array([distance]))
 
 
 def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -> Radiated:
@@ -215,11 +257,11 @@ def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -
     k, source = s.largest_kx(side.behind), directions.source
     if k == 0:
         return NOTHING
-    drive = driven_by(source, TransferFunction(s, unchanged))
+    drive = directions.drive
     reach = source.reach(1e-8)
 
     def density(kx: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        launched, *by_direction = directions.means(kx, k)
+        launched, *by_direction = directions.means(kx, k, shift)
         kx = kx.astype(complex)
         driven = drive(kx, np.zeros(1), shift)[0]
         h, flux, weight = carried(s, source.z0, side.transfer, side.behind, kx, shift)
@@ -231,9 +273,10 @@ def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -
     return power.radiated(density, lambda kx: density(kx, SHIFT), k, s.real_branches, count, rtol)
 
 
-def _by_direction(source: Any, radii: np.ndarray, k0: float, k: float) -> np.ndarray:
+def _by_direction(directions: Directions, radii: np.ndarray, k: float, shift: float) -> np.ndarray:
     """Means over directions at |k| (n,) of |S|^2, and of it times x, y and z of the unit vector in a medium of wavenumber k, and times the angles
     to the planes x = 0 and y = 0 less the source's own, and their squares: (8, n)."""
+    source = directions.source
     count = 4 * math.ceil((MARGIN + 2 * float(radii.max()) * source.reach(1e-8)) / 4)  # x and y alike
     turn = 2 * math.pi * np.arange(count) / count
     own = [math.sin(math.radians(source.angle)) * v for v in unit_vector(source.azimuth)]
@@ -242,7 +285,7 @@ def _by_direction(source: Any, radii: np.ndarray, k0: float, k: float) -> np.nda
     for start in range(0, radii.size, block):
         part = slice(start, start + block)
         x, y = (np.multiply.outer(radii[part], v(turn)) for v in (np.cos, np.sin))
-        strength = np.abs(scattered_spectrum(source, x.ravel(), y.ravel(), k0).reshape(x.shape)) ** 2
+        strength = np.abs(directions.spectrum(radii[part], turn, shift)) ** 2
         z = np.sqrt(np.maximum(k * k - radii[part] ** 2, 0.0))[:, None]
         angles = [np.arcsin(np.clip(v / k, -1, 1)) - math.asin(a) for v, a in zip((x, y), own, strict=True)]
         factors = (1.0, x / k, y / k, z / k, *angles, *(v**2 for v in angles))

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import memory
-from ..contour.error import ErrorBudget
+from ..contour import summed
+from ..contour.error import ErrorBudget, uniform_budget
 from ..contour.space.choose import choose_in_space
 from ..contour.stationary_phase import BRIGHT, shifts
+from ..fields.in_space import driven_by
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
 from ..sources.angles import single
 from ..sources.in_space import has_edge, unit_vector
+from ..sources.sum_in_space import SumInSpace, parts_of
 from .windows import FAINT
 
 #: A window is doubled while it does not hold what is measured, up to so many times, and while its lattice has no more points than this: the next
@@ -60,11 +63,88 @@ class Plane(NamedTuple):
                 value[part] = np.einsum("pk,pk->p", rows[m], along_x * (1j * self.kx) ** n)
         return list(out)
 
-    def steps(self) -> tuple[float, float]:
-        """Spacings of a grid on which |p|^2 shows its maxima, along x and y."""
+    @property
+    def points(self) -> int:
+        """Of the lattice."""
+        return self.waves.size
+
+    @property
+    def ends(self) -> np.ndarray:
+        """The least and largest kx, then ky: (2, 2)."""
+        return np.array([[k[0], k[-1]] for k in (self.kx, self.ky)])
+
+    @property
+    def strong_ends(self) -> np.ndarray:
+        """Those of the strong plane waves; 0 where there are none."""
         strong = np.abs(self.waves) > FAINT * np.abs(self.waves).max()
-        turns = (np.ptp(k[strong.any(axis=i)]) for i, k in enumerate((self.kx, self.ky)) if strong.any())
-        return tuple(2 * math.pi / (FINER * max(t, 1e-9)) for t in turns)
+        strongest = [k[strong.any(axis=i)] for i, k in enumerate((self.kx, self.ky))]
+        return np.array([[k.min(initial=math.inf), k.max(initial=-math.inf)] for k in strongest])
+
+
+class PlaneOfSum(NamedTuple):
+    """p of a weighted sum of planes, each of positions from a place of its own, (2,) m; it serves as `Plane` does."""
+
+    planes: tuple[Plane, ...]
+    weights: tuple[complex, ...]
+    at: tuple[np.ndarray, ...]
+    budget: ErrorBudget
+
+    def of_each(self, x: np.ndarray, y: np.ndarray) -> Iterator[np.ndarray]:
+        """The weighted p (Y, X) of each plane."""
+        for plane, weight, at in self._each:
+            yield weight * plane.on_grid(x - at[0], y - at[1])
+
+    def on_grid(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        """p (Y, X)."""
+        return np.asarray(sum(self.of_each(x, y)))
+
+    def along(self, axis: int, across: float) -> Callable[[np.ndarray], np.ndarray]:
+        """See `Plane.along`."""
+        lines = [
+            (plane.along(axis, across - float(at[1 - axis])), weight, float(at[axis]))
+            for plane, weight, at in self._each
+        ]
+        return lambda places: np.asarray(sum(weight * line(places - start) for line, weight, start in lines))
+
+    def taylor(self, places: np.ndarray, order: int) -> list[np.ndarray]:
+        """See `Plane.taylor`."""
+        each = (weight * np.array(plane.taylor(places - at, order)) for plane, weight, at in self._each)
+        return list(np.asarray(sum(each)))
+
+    @property
+    def _each(self) -> Iterator[tuple[Plane, complex, np.ndarray]]:
+        return zip(self.planes, self.weights, self.at, strict=True)
+
+    @property
+    def points(self) -> int:
+        """Of the largest lattice."""
+        return max(plane.points for plane in self.planes)
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Around those of all planes."""
+        return _around([plane.ends for plane in self.planes])
+
+    @property
+    def strong_ends(self) -> np.ndarray:
+        """Around those of all planes."""
+        return _around([plane.strong_ends for plane in self.planes])
+
+
+def _around(ends: list[np.ndarray]) -> np.ndarray:
+    low, high = np.moveaxis(np.array(ends), -1, 0)
+    return np.stack([low.min(axis=0), high.max(axis=0)], axis=1)
+
+
+class Way(NamedTuple):
+    """How a source gets to the plane across which it is measured."""
+
+    transfer: Callable[[float], TransferFunction]  #: H of a launch plane's z0
+    z: float
+
+    def of(self, source: Any) -> TransferFunction:
+        """H of what drives a source."""
+        return driven_by(source, self.transfer(source.z0))
 
 
 class Window(NamedTuple):
@@ -74,10 +154,10 @@ class Window(NamedTuple):
     half: np.ndarray
 
 
-def plane_of(s: SampledSlab, source: Any, transfer: TransferFunction, z: float, window: Window, rtol: float) -> Plane:
-    """p across the plane z on a contour that serves a window."""
+def _plane_of(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Plane:
+    """p of a single source across a plane on a contour that serves a window."""
     grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(*window, strict=True))
-    beams, planes = single(source), np.array([z])
+    beams, planes, transfer = single(source), np.array([way.z]), way.of(source)
     quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
     contour = quadrature.contour
     lattice = contour.lattice
@@ -88,7 +168,7 @@ def plane_of(s: SampledSlab, source: Any, transfer: TransferFunction, z: float, 
 class Sampled(NamedTuple):
     """A plane, and p on a grid of a window."""
 
-    plane: Plane
+    plane: Plane | PlaneOfSum
     x: np.ndarray  #: (X,)
     y: np.ndarray  #: (Y,)
     p: np.ndarray  #: (Y, X)
@@ -101,31 +181,97 @@ class Sampled(NamedTuple):
         return rim / float(size.max()) if rim > 0 else 0.0
 
 
-def sampled(plane: Plane, window: Window) -> Sampled:
-    """p on a grid of a window that shows its maxima."""
+def sampled(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Sampled:
+    """p across the plane of a way on a grid of a window that shows its maxima.
+
+    A sum of sources has a plane for each, whose errors are added over the largest |p| of the sum; where they cancel,
+    with a lower rtol.
+    """
+    if not isinstance(source, SumInSpace):
+        plane = _plane_of(s, source, way, window, rtol)
+        x, y = _grid(plane, window)
+        return Sampled(plane, x, y, plane.on_grid(x, y))
+    bright, wider = landing(s, source, way), None
+    if np.any(np.abs(bright.middle - window.middle) + bright.half > window.half * (1 + 1e-9)):
+        # the sources may be brightest outside of a window that was chosen
+        wider = _sum_in(s, source, way, _joined([bright, window]), max(summed.ROUGH, rtol))[1]
+    made_with = rtol
+    while True:
+        profile, scales, budgets = _sum_in(s, source, way, window, made_with)
+        budget = summed.added(budgets, scales if wider is None else scales.larger(wider))
+        lower = summed.closer(float(budget.total.max()), rtol, made_with)
+        if lower is None:
+            return profile._replace(plane=profile.plane._replace(budget=budget))
+        made_with = lower
+
+
+def _sum_in(
+    s: SampledSlab, source: SumInSpace, way: Way, window: Window, rtol: float
+) -> tuple[Sampled, summed.Scales, list[ErrorBudget]]:
+    """p of a sum in a window, and the budgets of its sources."""
+    moved = [window._replace(middle=window.middle - part.at) for part in source.parts]
+    planes = [_plane_of(s, part.source, way, own, rtol) for part, own in zip(source.parts, moved, strict=True)]
+    _, weights, at = zip(*source.parts, strict=True)
+    plane = PlaneOfSum(tuple(planes), weights, at, uniform_budget(1, np.nan))
+    x, y = _grid(plane, window)
+    p, largest = np.zeros((y.size, x.size), complex), []
+    for field in plane.of_each(x, y):
+        p += field
+        largest.append(np.abs(field).max())
+    scales = summed.Scales(np.abs(p).max().reshape(1, 1), np.reshape(largest, (-1, 1, 1)))
+    return Sampled(plane, x, y, p), scales, [each.budget for each in planes]
+
+
+def _grid(plane: Plane | PlaneOfSum, window: Window) -> tuple[np.ndarray, np.ndarray]:
+    """Positions of a window, even along x and y, on which |p|^2 shows its maxima."""
+    low, high = plane.strong_ends.T
+    steps = 2 * math.pi / (FINER * np.maximum(high - low, 1e-9))
     x, y = (
         m + h * np.linspace(-1, 1, 2 * max(48, math.ceil(h / step)) + 1)
-        for m, h, step in zip(*window, plane.steps(), strict=True)
+        for m, h, step in zip(*window, steps, strict=True)
     )
-    memory.check_terms(plane.waves.size, x.size)
-    return Sampled(plane, x, y, plane.on_grid(x, y))
+    memory.check_terms(plane.points, x.size)
+    return x, y
 
 
-def widened(
-    s: SampledSlab, source: Any, way: tuple[TransferFunction, float], window: Window, rtol: float, rim: float
-) -> Sampled:
-    """p across the plane of a `way` (H and z) in the first of ever wider windows on whose rim |p| is below `rim` of the largest."""
+def widened(s: SampledSlab, source: Any, way: Way, rtol: float, rim: float) -> Sampled:
+    """p across the plane of a way, in the first of ever wider windows on whose rim |p| is below `rim` of the largest.
+
+    They lie about where the source lands.
+    """
+    window = landing(s, source, way)
     for doubling in range(DOUBLINGS + 1):
-        plane = plane_of(s, source, *way, window, rtol)
-        profile = sampled(plane, window)
-        if profile.rim < rim or doubling == DOUBLINGS or plane.waves.size > MOST_POINTS:
+        profile = sampled(s, source, way, window, rtol)
+        if profile.rim < rim or doubling == DOUBLINGS or profile.plane.points > MOST_POINTS:
             break
         window = window._replace(half=2 * window.half)
     return profile
 
 
-def landing(s: SampledSlab, source: Any, transfer: TransferFunction, z: float) -> Window:
-    """A window about the places where a beam is bright, by stationary phase.
+def landing(s: SampledSlab, source: Any, way: Way) -> Window:
+    """A window about the places where a source is bright; of a sum about those of all its sources."""
+    return _joined(
+        [
+            Window(middle + part.at, half)
+            for part in parts_of(source)
+            for middle, half in [_landing(s, part.source, way.of(part.source), way.z)]
+        ]
+    )
+
+
+def _joined(windows: list[Window]) -> Window:
+    """The window around several."""
+    if len(windows) == 1:
+        return windows[0]
+    low, high = (
+        np.min([w.middle - w.half for w in windows], axis=0),
+        np.max([w.middle + w.half for w in windows], axis=0),
+    )
+    return Window((low + high) / 2, (high - low) / 2)
+
+
+def _landing(s: SampledSlab, source: Any, transfer: TransferFunction, z: float) -> Window:
+    """A window about the places where a single source is bright, by stationary phase.
 
     H depends on |k| alone, so that a plane wave is carried along its own (kx, ky), by D = -d(arg H)/d|k|. |p| there is |S H| over the root of how
     far rays part, along and across the plane wave: dD/d|k| and D/|k|.

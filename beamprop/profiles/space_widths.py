@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import functools
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..contour.error import ErrorBudget, uniform_budget
-from ..fields.in_space import driven_by
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
-from ..response.transfer_function import TransferFunction
 from ..sources.in_space import EllipticalGaussian, has_edge
+from ..sources.sum_in_space import SumInSpace
 from .fwhm import Width, full_width
 from .level_area import Area, Peak, area_above, peak_of
-from .space_plane import Sampled, landing, widened
+from .space_plane import Sampled, Way, widened
 from .windows import EDGE
 
 
@@ -56,8 +56,7 @@ def widths(s: SampledSlab, source: Any, level: float, rtol: float, distance: flo
     z0 = source.z0
     launch = known_launch(source, level) or _free(s, source, z0, level, rtol)
     near = launch if z0 == 0 else _free(s, source, 0.0, level, rtol)
-    through = driven_by(source, transfer_function.through(s, z0))
-    profile = profile_of(s, source, (through, s.thickness), rtol, EDGE * level)
+    profile = widened(s, source, Way(partial(transfer_function.through, s), s.thickness), rtol, EDGE * level)
     far, air = section(profile, level), _free(s, source, z0 + distance, level, rtol)
     area = area_above(profile, far.peak, level, rtol)
     row = SpaceRow(
@@ -78,13 +77,7 @@ def widths(s: SampledSlab, source: Any, level: float, rtol: float, distance: flo
 def _free(s: SampledSlab, source: Any, z: float, level: float, rtol: float) -> Section:
     """Across a plane of the medium in front alone."""
     free = s.without_slab()
-    transfer = driven_by(source, transfer_function.through(free, source.z0))
-    return section(profile_of(free, source, (transfer, z), rtol, EDGE * level), level)
-
-
-def profile_of(s: SampledSlab, source: Any, way: tuple[TransferFunction, float], rtol: float, rim: float) -> Sampled:
-    """p across the plane of a `way` (H and z) in a window, about where the beam lands, on whose rim |p| is below `rim` of the peak."""
-    return widened(s, source, way, landing(s, source, *way), rtol, rim)
+    return section(widened(free, source, Way(partial(transfer_function.through, free), z), rtol, EDGE * level), level)
 
 
 def section(profile: Sampled, level: float) -> Section:
@@ -107,8 +100,17 @@ def cuts_of(profile: Sampled, peak: Peak, level: float) -> list[Width]:
 
 
 def known_launch(source: Any, level: float) -> Section | None:
-    """The launched width where it is known: of a Gaussian, and of a sharp edge its diameter, of an array's elements theirs."""
-    if isinstance(source, EllipticalGaussian):
+    """The launched width where it is known: of a Gaussian, and a sharp edge's diameter, of an array its elements'.
+
+    Where sources of a sum have sharp edges, which no lattice resolves on their plane, it is left open, nan.
+    """
+    if isinstance(source, SumInSpace):
+        if len(source.parts) == 1:
+            return known_launch(source.parts[0].source, level)
+        if not has_edge(source):
+            return None
+        width = np.full(2, np.nan)
+    elif isinstance(source, EllipticalGaussian):
         width = 2 * np.array(source.radii) * math.sqrt(math.log(1 / level))
     elif has_edge(source):
         width = np.full(2, 2 * getattr(source, "element", source).reach(0.5))

@@ -28,7 +28,8 @@ class SourceSum(Summable):
     Notes
     -----
     The field is the sum of the sources' fields, errors added: of sources that cancel each other the estimate grows, for it is over
-    the largest \\|p\\| of the sum. The angle of a sum is its sources' where they share it, and 0 otherwise; `field` refuses `angle` then.
+    the largest \\|p\\| of the sum. The angle of a sum is its sources' where they share it, and 0 otherwise; `angle=` is
+    refused then. Widths are by the sources' ``width_of`` where they share it, and of \\|p\\| otherwise.
 
     Examples
     --------
@@ -96,6 +97,12 @@ class SourceSum(Summable):
     def azimuth(self) -> float:
         """The sources', where they share it, else 0 [degree]."""
         return getattr(self.sources[0], "azimuth", 0.0) if self.share_angle else 0.0
+
+    @property
+    def width_of(self) -> str:
+        """What widths of the sum are of: the sources', where they share it, else "pressure"."""
+        kinds = {getattr(s, "width_of", "pressure") for s in self.sources}
+        return kinds.pop() if len(kinds) == 1 else "pressure"
 
     @property
     def centre(self) -> float:
