@@ -25,6 +25,8 @@ TURNS = 120.0
 BEYOND = 0.1
 #: A piece begins at this part of its end at least, for Hankel functions are singular at 0.
 NEAREST = 0.25
+#: Least k r of a piece, about: below it few nodes are left, on circles about poles at most.
+LEAST = 1.0
 #: A node may lie so far off the axis that T_q has grown by exp(GROWTH), or is summed by itself.
 GROWTH = 4.0
 #: Nodes whose polynomials are held at a time, and positions from which strengths are formed.
@@ -101,16 +103,18 @@ def bessel_sums(k: np.ndarray, weight: np.ndarray, positions: np.ndarray, extent
 
     middle, half = (extent[0] + extent[1]) / 2, (extent[1] - extent[0]) / 2
     pieces, alone, high = [], np.ones(k.size, bool), float(k.real.max())
-    while True:
+    while high * middle > LEAST:
         low = max(high - TURNS / half, NEAREST * high)
         reach = (0.5 + BEYOND) * (high - low)
         count = terms(reach * half)
-        nodes = (k.real > low) & (k.real <= high)
+        inside = (k.real > low) & (k.real <= high)
         if np.count_nonzero(k.real <= high) < 2 * count:
             break
-        nodes = np.flatnonzero(nodes & (np.abs(k.imag) < GROWTH * reach / count))
+        nodes = np.flatnonzero(inside & (np.abs(k.imag) < GROWTH * reach / count))
         if nodes.size > 2 * count:
-            pieces.append(Piece(nodes, (low + high) / 2, reach, _series((low + high) / 2, reach, count, (positions, middle))))
+            pieces.append(
+                Piece(nodes, (low + high) / 2, reach, _series((low + high) / 2, reach, count, (positions, middle)))
+            )
             alone[nodes] = False
         high = low
     left = np.flatnonzero(alone)

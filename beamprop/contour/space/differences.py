@@ -25,7 +25,7 @@ from .bessel_sums import BesselSums, bessel_sums, terms
 #: Positions from which G is interpolated, over the fewest that determine it, and how many of them: Lagrange's polynomials err by 4e-14.
 FINE, POSITIONS = 64, 8
 #: The most points of a grid; so many of them are interpolated at a time, 150 bytes each, for planes with so many values along ky.
-MOST_POINTS, BLOCK, HELD = 400_000, 2**14, 2**18
+MOST_POINTS, BLOCK, HELD = 400_000, 2**13, 2**17
 
 
 class Axis(NamedTuple):

@@ -105,7 +105,9 @@ class Sheet(NamedTuple):
     around: tuple[np.ndarray, np.ndarray] | None = (
         None  #: positions x and y about the source, where those of the grid lie aside
     )
-    once: bool = False  #: whether a field is summed on a contour but once: its table from nodes to the lattice is not held then
+    once: bool = (
+        False  #: whether a field is summed on a contour but once: its table from nodes to the lattice is not held then
+    )
 
     @property
     def on_a_line(self) -> bool:
