@@ -19,10 +19,11 @@ from ...arrays.matmul import product
 
 #: Bessel functions of the orders beyond c + AIRY (c/2)^(1/3) are below 1e-15 at c, as Ai(AIRY) is (DLMF 9.7.5, 10.19.8).
 AIRY = 14.0
-#: How far the Hankel functions turn on a piece, about: longer ones take fewer terms in all, and more products.
-TURNS = 120.0
+#: How far the Hankel functions turn on a piece, about, and over the number of positions at least: longer ones take fewer terms in all, and
+#: more products.
+TURNS, LONG = 120.0, 0.25
 #: How far a series reaches beyond its nodes, over the piece: T_q grows less with the distance from the axis there.
-BEYOND = 0.1
+BEYOND = 0.07
 #: A piece begins at this part of its end at least, for Hankel functions are singular at 0.
 NEAREST = 0.25
 #: Least k r of a piece, about: below it few nodes are left, on circles about poles at most.
@@ -104,7 +105,7 @@ def bessel_sums(k: np.ndarray, weight: np.ndarray, positions: np.ndarray, extent
     middle, half = (extent[0] + extent[1]) / 2, (extent[1] - extent[0]) / 2
     pieces, alone, high = [], np.ones(k.size, bool), float(k.real.max())
     while high * middle > LEAST:
-        low = max(high - TURNS / half, NEAREST * high)
+        low = max(high - max(TURNS, LONG * positions.size) / half, NEAREST * high)
         reach = (0.5 + BEYOND) * (high - low)
         count = terms(reach * half)
         inside = (k.real > low) & (k.real <= high)
