@@ -42,7 +42,7 @@ def grids() -> dict[str, dict[str, Any]]:
 
 
 def windows_aside() -> dict[str, tuple[bp.Slab, bp.GaussianBeam, dict[str, Any], float]]:
-    """Slab, beam, grid and rtol of windows 300 wavelengths aside: those that take the most memory beside their answers."""
+    """Slab, beam, grid and rtol of windows 300 wavelengths aside: several kinds, long contours among them."""
     air, narrow = bp.Slab.uniform(bp.AIR, 0.5), bp.GaussianBeam(0.1, 80, z0=-0.1)
     x, y = np.linspace(41, 45, 100), np.linspace(-2, 2, 100)
     return {
