@@ -1,6 +1,7 @@
 """The pieces of fields in three dimensions: nodes, kernel, table, lattice; each against a slow and obvious sum."""
 
 import math
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -155,3 +156,18 @@ def test_the_mean_over_directions_follows_narrow_spectra():
         beam = EllipticalGaussian(radii, 45.0, 20.0, 0.0)
         plain = np.abs(beam.spectrum_at(np.outer(k, np.cos(turn)), np.outer(k, np.sin(turn)), 50.0)).mean(axis=1)
         assert mean_size(beam, k, 50.0) == pytest.approx(plain, rel=1e-9)
+
+
+def test_the_mean_over_directions_in_parts():
+    """Each wavenumber by itself, and 6000 of them, more than are averaged at a time, within 10 MiB."""
+    from beamprop.sources.in_space import AT_A_TIME, AVERAGED, EllipticalGaussian, mean_size
+
+    k, beam = np.linspace(0.0, 50.0, 6000), EllipticalGaussian((0.4, 0.2), 45.0, 20.0, 0.0)
+    assert k.size * AVERAGED[0] > 2 * AT_A_TIME
+    tracemalloc.start()
+    means = mean_size(beam, k, 50.0)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 10 * 2**20
+    for i in (0, 2999, 5999):
+        assert means[i] == pytest.approx(float(mean_size(beam, k[[i, -1]], 50.0)[0]), rel=1e-12)

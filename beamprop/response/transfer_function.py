@@ -18,6 +18,8 @@ from .slab import Response
 
 #: How far behind a depth v_x is taken, over the depth: a depth on an interface is known to a few units of the last place.
 AT_INTERFACE = 8 * float(np.finfo(float).eps)
+#: Planes behind the slab whose waves are formed at a time: beside many planes no second array as large is held.
+AT_A_TIME = 16
 
 
 @dataclass(frozen=True)
@@ -123,8 +125,10 @@ def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> 
             out[front] = propagation(kz, depth - z0) + response.r[0] * launch * propagation(kz, -depth)
         if inside.any():
             out[inside] = response.inside[0] * launch if z0 else response.inside[0]
-        if behind.any():
-            out[behind] = _behind(s, kx, response, z[behind] - s.thickness, "p") * launch
+        rows = np.flatnonzero(behind)
+        for i in range(0, rows.size, AT_A_TIME):
+            part = rows[i : i + AT_A_TIME]
+            out[part] = _behind(s, kx, response, z[part] - s.thickness, "p") * launch
     return out
 
 

@@ -58,8 +58,9 @@ def has_edge(beam: Any) -> bool:
     return not np.all(np.isfinite(beam.box(1.0, 0.5)))
 
 
-#: Directions over which |S| is averaged: as many as follow its phases at the tolerance ENDED of the source, between these.
-AVERAGED, ENDED = (48, 256), 1e-6
+#: Directions over which |S| is averaged: as many as follow its phases at the tolerance ENDED of the source, between these; and of how many
+#: plane waves at a time.
+AVERAGED, ENDED, AT_A_TIME = (48, 256), 1e-6, 2**17
 
 
 def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
@@ -70,8 +71,11 @@ def mean_size(beam: Any, k: np.ndarray, k0: float) -> np.ndarray:
     phases = float(np.max(k)) * math.hypot(*beam.half_widths(ENDED))
     count = math.ceil(np.clip(2 * phases, *AVERAGED))
     turn = np.radians(beam.azimuth) + 2 * np.pi * np.arange(count) / count
-    kx, ky = (np.multiply.outer(k, along) for along in (np.cos(turn), np.sin(turn)))
-    return np.asarray(np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1))
+    out, block = np.empty(k.shape), max(1, AT_A_TIME // count)
+    for start in range(0, k.size, block):
+        kx, ky = (np.multiply.outer(k[start : start + block], along) for along in (np.cos(turn), np.sin(turn)))
+        out[start : start + block] = np.abs(beam.spectrum_at(kx, ky, k0)).mean(axis=1)
+    return out
 
 
 def scattered_spectrum(beam: Any, kx: np.ndarray, ky: np.ndarray, k0: float) -> np.ndarray:

@@ -2,15 +2,17 @@
 
     python experiments/benchmarks/space.py [--repeats 5]
 
-The two-dimensional field has 500 x 500 values on (z, x); both are judged. `ROW_OVER_PLANE` of `fields/in_space.py` is the last table: the
+The two-dimensional field has 500 x 500 values on (z, x); both are judged. Windows 300 wavelengths aside have a table of their own. `ROW_OVER_PLANE` of `fields/in_space.py` is the last table: the
 time of one row y on all planes over that of one plane, for lattices of different beams.
 """
 
 from __future__ import annotations
 
 import argparse
+import functools
 import time
 import tracemalloc
+import warnings
 from typing import Any
 
 import numpy as np
@@ -36,6 +38,24 @@ def grids() -> dict[str, dict[str, Any]]:
         "cut 500 x 500": {"x": np.linspace(-1, 1, 500), "z": z, "y": 0.0},
         "plane 512 x 512": {"x": plane, "z": SLAB.thickness, "y": plane},
         "volume 200^3": {"x": coarse, "z": np.linspace(-0.1, 1.3, 200), "y": coarse},
+    }
+
+
+def windows_aside() -> dict[str, tuple[bp.Slab, bp.GaussianBeam, dict[str, Any], float]]:
+    """Slab, beam, grid and rtol of windows 300 wavelengths aside: several kinds, long contours among them."""
+    air, narrow = bp.Slab.uniform(bp.AIR, 0.5), bp.GaussianBeam(0.1, 80, z0=-0.1)
+    x, y = np.linspace(41, 45, 100), np.linspace(-2, 2, 100)
+    return {
+        "4 m x 4 m behind the slab": (SLAB, bp.GaussianBeam(0.27, 45, z0=-0.1), {"x": x, "z": 1.2, "y": y}, 1e-8),
+        "10 m x 1 m behind the slab": (SLAB, narrow, {"x": np.linspace(41, 51, 100), "z": 1.2, "y": y / 4}, 1e-8),
+        "20 planes of 4 m x 4 m in air": (air, narrow, {"x": x, "z": np.linspace(1, 3, 20), "y": y}, 1e-8),
+        "200 x 200, 2 m deep, in air": (
+            air,
+            narrow,
+            {"x": np.linspace(41, 45, 200), "z": np.linspace(1, 3, 200), "y": 0.0},
+            1e-8,
+        ),
+        "4 m x 4 m in air, rtol 1e-11": (air, narrow, {"x": x, "z": 3.0, "y": y}, 1e-11),
     }
 
 
@@ -84,6 +104,15 @@ def main() -> None:
             flat, ours = measure(lambda: bp.field(SLAB, BEAMS["circular, 0"], F, x, z), work, repeats=repeats)
             beside = memory_beside(work, 16.0 * np.prod([np.size(v) for v in grid.values()]))
             print(f"| {name} | {text} | {amount(ours, 's')} | {ours / flat:.2g} | {amount(beside, 'B')} |", flush=True)
+    print("\n| window aside | time | memory beside the answer |", "|---|---|---|", sep="\n")
+    warnings.simplefilter(
+        "ignore", bp.AccuracyWarning
+    )  # two of them are dark to rounding: their error is over |p| far outside
+    for name, (slab, beam, grid, rtol) in windows_aside().items():
+        work = functools.partial(bp.field, slab, beam, F, **grid, rtol=rtol)
+        (ours,) = measure(work, repeats=repeats)
+        beside = memory_beside(work, 16.0 * np.prod([np.size(v) for v in grid.values()]))
+        print(f"| {name} | {amount(ours, 's')} | {amount(beside, 'B')} |", flush=True)
     print("\n| beam | a row y over a plane |", "|---|---|", sep="\n")
     for text, beam in BEAMS.items():
         print(f"| {text} | {row_over_plane(beam):.2g} |")

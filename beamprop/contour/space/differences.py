@@ -17,17 +17,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...arrays import fft
-from ...arrays.matmul import product
 from ...sources.angles import AngleInterpolation
 from ...sources.in_space import mean_size
 from . import lattice
+from .bessel_sums import BesselSums, bessel_sums, terms
 
 #: Positions from which G is interpolated, over the fewest that determine it, and how many of them: Lagrange's polynomials err by 4e-14.
 FINE, POSITIONS = 64, 8
-#: Bessel functions of the orders beyond c + AIRY (c/2)^(1/3) are below 1e-15 at c, as Ai(AIRY) is (DLMF 9.7.5, 10.19.8).
-AIRY = 14.0
-#: The most points of a grid, 100 bytes each for interpolation where no two are mirrored; and so many of them at a time.
-MOST_POINTS, BLOCK = 400_000, 2**15
+#: The most points of a grid; so many of them are interpolated at a time, 150 bytes each, for planes with so many values along ky.
+MOST_POINTS, BLOCK, HELD = 400_000, 2**13, 2**17
 
 
 class Axis(NamedTuple):
@@ -77,12 +75,10 @@ class Differences(NamedTuple):
     ky: np.ndarray  #: (Ny,)
     area: np.ndarray  #: exp(-i k d0) of the first difference over the number of points, (Ny, Nx)
     axes: tuple[Axis, Axis]
-    folded: np.ndarray  #: (Gy,), which row of radii is that of each row of the grid
-    blocks: list[
-        tuple[Any, np.ndarray]
-    ]  #: from even angles of Chebyshev's polynomials to the radii of rows: matrices, and which angles
-    k: np.ndarray  #: (n,), of a contour's nodes
-    kernel: np.ndarray  #: (n, N), G at Chebyshev's positions of a contour's h
+    rows: np.ndarray  #: (R,), the |y| of the grid, each once
+    folded: np.ndarray  #: (Gy,), which of these is that of each row of the grid
+    extent: tuple[float, float]  #: least and largest radius
+    kernel: BesselSums  #: G at Chebyshev's positions of a contour's h
     known: dict[float, np.ndarray]  #: see `Lattice`
 
     @property
@@ -96,24 +92,40 @@ class Differences(NamedTuple):
 
     def strengths(self, k0: float, beams: AngleInterpolation) -> np.ndarray:
         """|w J0| of each node over the positions, times the largest mean of |S| over directions: (n,)."""
-        means = [mean_size(beams.at(float(a)), self.k.real, k0) for a in beams.angles]
-        return np.asarray(np.max(means, axis=0) * np.linalg.norm(self.kernel, axis=1))
+        means = [mean_size(beams.at(float(a)), self.kernel.k.real, k0) for a in beams.angles]
+        return np.asarray(np.max(means, axis=0) * self.kernel.strengths)
 
     def planes(self, h: np.ndarray) -> Iterator[np.ndarray]:
         """G^ on the lattice of each plane of h (Z, n): (Ny, Nx) each."""
-        x, y = self.axes
-        columns, rows = (
+        along_x, along_y = (
             np.rint(-k * a.step * a.points / (2 * math.pi)).astype(int) % a.points
             for k, a in zip((self.kx, self.ky), self.axes, strict=True)
         )
-        count = self.kernel.shape[1]
-        across, along = x.taper, y.taper[:, None]
-        for values in product(h, self.kernel):
-            fine = fft.cosine_series(values, _angles(count))
-            g = np.concatenate([matrix @ fine[at].view(float).reshape(-1, 2) for matrix, at in self.blocks])
-            g = g.view(complex).reshape(-1, x.points)
-            over_x = fft.transform(g * across)[:, columns][self.folded] * along
-            yield fft.transform(np.ascontiguousarray(over_x.T))[:, rows].T
+        along, x_first = self.axes[1].taper, max(1, HELD // (self.rows.size * along_x.size))
+        step = max(1, BLOCK // along.size)
+        for start in range(0, len(h), x_first):
+            for over_x in self._over_x(self.kernel.at(h[start : start + x_first]), along_x):
+                plane = np.empty((along_x.size, along_y.size), complex)
+                for i in range(0, along_x.size, step):
+                    part = np.ascontiguousarray(over_x[:, i : i + step].T)
+                    plane[i : i + step] = fft.transform(part[:, self.folded] * along)[:, along_y]
+                yield plane.T
+
+    def _over_x(self, values: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Of the kernels at Chebyshev's positions (Z, N), the `columns` of their transforms over x: (Z, R, Nx)."""
+        x, angles = self.axes[0], _angles(values.shape[1])
+        across, places = x.taper, x.places
+        fine = np.stack([fft.cosine_series(v, angles) for v in values], axis=1).view(float)
+        middle, half = (self.extent[0] + self.extent[1]) / 2, (self.extent[1] - self.extent[0]) / 2
+        out = np.empty((len(values), self.rows.size, columns.size), complex)
+        step = max(1, BLOCK // x.points)
+        for i in range(0, self.rows.size, step):
+            radii = np.hypot(places, self.rows[i : i + step, None]).ravel()
+            matrix, at = _block(np.arccos(np.clip((radii - middle) / half, -1, 1)), angles)
+            g = (matrix @ fine[at]).view(complex).reshape(-1, x.points, len(values))
+            for plane, into in zip(np.moveaxis(g, 2, 0), out[:, i : i + step], strict=True):
+                into[...] = fft.transform(plane * across)[:, columns]
+        return out
 
 
 def _angles(count: int) -> int:
@@ -123,23 +135,17 @@ def _angles(count: int) -> int:
 
 def differences(k: np.ndarray, weight: np.ndarray, axes: tuple[Axis, Axis], band: float) -> Differences:
     """The grid for the nodes k (n,) of a radial contour and their weights."""
-    from scipy.special import jv
-
     x, y = axes
     rows, folded = np.unique(np.abs(y.places), return_inverse=True)
-    radii = np.hypot(x.places, rows[:, None]).ravel()
-    middle, half = (radii.max() + radii.min()) / 2, np.ptp(radii) / 2
-    turns = band * half
-    count = math.ceil(turns + AIRY * (turns / 2) ** (1 / 3)) + 20
+    radii = [np.hypot(x.places, row) for row in (rows[0], rows[-1])]
+    extent = float(radii[0].min()), float(radii[1].max())
+    middle, half = (extent[0] + extent[1]) / 2, (extent[1] - extent[0]) / 2
+    count = terms(band * half)
     at = middle + half * np.cos((np.arange(count) + 0.5) * math.pi / count)
-    kernel = np.multiply.outer(k, at)
-    jv(0, kernel, out=kernel)
-    kernel *= (weight / (2 * math.pi))[:, None]
-    turn = np.arccos(np.clip((radii - middle) / half, -1, 1))
-    blocks = [_block(turn[i : i + BLOCK], _angles(count)) for i in range(0, turn.size, BLOCK)]
+    kernel = bessel_sums(k, weight / (2 * math.pi), at, extent)
     kx, ky = (lattice.multiples(*a.ends, a.step * a.points) for a in axes)
     phases: Any = np.multiply.outer(np.exp(-1j * ky * y.places[0]), np.exp(-1j * kx * x.places[0]))
-    return Differences(kx, ky, phases / (x.points * y.points), axes, folded, blocks, k, kernel, {})
+    return Differences(kx, ky, phases / (x.points * y.points), axes, rows, folded, extent, kernel, {})
 
 
 def _block(turn: np.ndarray, angles: int) -> tuple[Any, np.ndarray]:

@@ -63,7 +63,7 @@ class Lattice(NamedTuple):
     area: float  #: dkx dky/(2 pi)^2
     of_point: np.ndarray  #: (Ny, Nx), index of the radius of each point, u where h_L is not needed
     table: Table  #: to u radii
-    kernel: np.ndarray  #: (n, t), from the contour's nodes to the table
+    kernel: Any  #: (n, t), from the contour's nodes to the table; or a `radial.LommelSums`
     known: dict[
         float, np.ndarray
     ]  #: spectra by angle, kept for all sums on the lattice: those of arrays and pistons take longer than sums
@@ -90,7 +90,8 @@ class Lattice(NamedTuple):
 
     def at_radii(self, h: np.ndarray) -> np.ndarray:
         """h_L of h (Z, n) at the radii, and 0: (Z, u + 1), to be taken at `of_point`."""
-        columns = np.ascontiguousarray(product(h, self.kernel).T).view(float)  # real pairs: half the products
+        at_table = product(h, self.kernel) if isinstance(self.kernel, np.ndarray) else self.kernel.at(h)
+        columns = np.ascontiguousarray(at_table.T).view(float)  # real pairs: half the products
         out = np.zeros((len(h), len(self.table.columns) + 1), complex)
         out[:, :-1] = (self.table.matrix @ columns).view(complex).T
         return out

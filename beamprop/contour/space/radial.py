@@ -13,12 +13,14 @@ entire function (Lommel's integral; Watson, Theory of Bessel Functions, 5.11):
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-#: Numbers in a block that stays in the cache with its temporaries.
-BLOCK = 2**14
+from ...arrays.matmul import product
+
+#: Numbers in a block that stays in the cache with its temporaries; and of a table that is formed in parts.
+BLOCK, HELD = 2**14, 2**17
 
 
 def bessel_zeros(first: int, count: int) -> tuple[np.ndarray, Any]:
@@ -52,6 +54,24 @@ def lommel(q: np.ndarray, k: np.ndarray, radius: float, weight: np.ndarray | flo
         np.multiply(real * across + imag * above, size, out=out[part].real)
         np.multiply(imag * across - real * above, size, out=out[part].imag)
     return out
+
+
+class LommelSums(NamedTuple):
+    """What `lommel` makes of h, without holding it: for a contour on which a field is summed but once."""
+
+    q: np.ndarray  #: (n,)
+    k: np.ndarray  #: (t,)
+    radius: float
+    weight: np.ndarray  #: (n,)
+    filtered: np.ndarray | float  #: a factor of each k
+
+    def at(self, h: np.ndarray) -> np.ndarray:
+        """h (Z, n) summed over q: (Z, t)."""
+        out, block = np.zeros((len(h), self.k.size), complex), max(1, HELD // self.k.size)
+        for start in range(0, self.q.size, block):
+            part = slice(start, start + block)
+            out += product(h[:, part], lommel(self.q[part], self.k, self.radius, self.weight[part]))
+        return np.asarray(out * self.filtered)
 
 
 def passed(q: np.ndarray, low: float, high: float, width: float) -> np.ndarray:

@@ -105,6 +105,9 @@ class Sheet(NamedTuple):
     around: tuple[np.ndarray, np.ndarray] | None = (
         None  #: positions x and y about the source, where those of the grid lie aside
     )
+    once: bool = (
+        False  #: whether a field is summed on a contour but once: its table from nodes to the lattice is not held then
+    )
 
     @property
     def on_a_line(self) -> bool:
@@ -141,7 +144,7 @@ class Sheet(NamedTuple):
         axes = self._grid(search, planned.plan, reached, second)
         if axes is not None:
             return contour._replace(lattice=differences(contour.k, contour.weight, axes, plan.band))
-        return contour._replace(lattice=_lattice(contour, reached, self.goal(search.rtol, planned.plan)))
+        return contour._replace(lattice=_lattice(contour, reached, self.goal(search.rtol, planned.plan), self.once))
 
     def _grid(self, search: Search, plan: BentPlan, reached: Reached, second: bool) -> tuple[Axis, Axis] | None:
         """The grid of differences between positions and source, where positions lie aside and the lattice is large."""
@@ -215,7 +218,7 @@ class Sheet(NamedTuple):
         around = tuple(np.linspace(-1, 1, AROUND) * reach[:, None]) if self.around is None else self.around
         x, y = around if self.rays is None else landed(self.rays, checks.sources, checks.transfer, checks.z)
         x, y = (np.unique(np.concatenate([a, b])) for a, b in zip(around, (x, y), strict=True))
-        return Sheet(x, y, (float(np.abs(x).max()), float(np.abs(y).max())))
+        return Sheet(x, y, (float(np.abs(x).max()), float(np.abs(y).max())), once=True)
 
 
 def landed(
@@ -235,13 +238,15 @@ AROUND = 41
 NO_AMPLITUDES = (np.empty(0), np.empty(0))
 
 
-def _lattice(contour: Contour, reached: Reached, goal: float) -> Lattice:
-    """The lattice of a contour: it ends where the source's spectrum does, or by a filter."""
+def _lattice(contour: Contour, reached: Reached, goal: float, once: bool) -> Lattice:
+    """The lattice of a contour: it ends where the source's spectrum does, or by a filter. For one sum alone its kernel is not held."""
     spectrum, windows, radius, high, softness = reached
     kx, ky = (lattice.multiples(ends[0], ends[1], float(w)) for ends, w in zip(spectrum.box, windows, strict=True))
     radii, of_point = lattice.radii_of(kx, ky, windows, (spectrum.low, spectrum.high))
     table = lattice.interpolation(radii, math.pi / (lattice.FINE * radius), lattice.positions_for(goal))
-    kernel = radial.lommel(contour.k, table.radii, radius, contour.weight)
-    if math.isfinite(softness):
-        kernel *= radial.passed(table.radii, 0.0, high, softness)
+    passed = radial.passed(table.radii, 0.0, high, softness) if math.isfinite(softness) else 1.0
+    kernel: Any = radial.LommelSums(contour.k, table.radii, radius, contour.weight, passed)
+    if not once:
+        kernel = radial.lommel(contour.k, table.radii, radius, contour.weight)
+        kernel *= passed
     return Lattice(kx, ky, 1 / float(np.prod(windows)), of_point, table, kernel, {})
