@@ -30,7 +30,8 @@ class Array(Summable):
         Steer the array by delays: each element is multiplied with ``exp(i k0 sin(angle) s)``, s its distance from the middle towards the
         azimuth, from x towards y. `field` takes many angles.
     focus : (x, y, z), m, optional
-        Focus it by delays, so that its elements are in phase there in the medium in front; z behind z0.
+        Focus it by delays, so that its elements are in phase there in the medium in front; z behind z0. With an angle beside it both
+        delays add up, and the focus moves.
 
     Notes
     -----
