@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -52,6 +53,29 @@ def _up_to_soft_wall(segments: list) -> tuple[list, float]:
         kept.append((layers, periods))
         depth += period * periods
     return kept, math.inf
+
+
+def pieces(segments: list, start: float, stop: float) -> Iterator[tuple[list, int | tuple[float, float]]]:
+    """What lies between two depths: layers, with the number of whole periods, or with both ends of a part of one from its begin.
+
+    By fractions: the rounding of 100 000 periods times their thickness is 1e-11 of a period.
+    """
+    at = Fraction(0)
+    for layers, periods in segments:
+        period = sum((Fraction(v[3]) for v in layers), Fraction(0))
+        lo, hi = max(Fraction(start) - at, Fraction(0)), min(Fraction(stop) - at, period * periods)
+        if hi > lo:
+            first, last = math.ceil(lo / period), math.floor(hi / period)
+            if last < first:
+                yield layers, (float(lo - last * period), float(hi - last * period))
+            else:
+                if first * period > lo:
+                    yield layers, (float(lo - (first - 1) * period), float(period))
+                if last > first:
+                    yield layers, last - first
+                if hi > last * period:
+                    yield layers, (0.0, float(hi - last * period))
+        at += period * periods
 
 
 class Medium:
@@ -110,32 +134,23 @@ class Medium:
 
     def part(self, k: np.ndarray, y: np.ndarray, start: float, stop: float) -> Scatter | None:
         """What lies between two depths."""
-        out, at = None, 0.0
-        for layers, periods in self.segments:
-            period = sum(v[3] for v in layers)
-            end = at + period * periods
-            lo, hi = max(start, at), min(stop, end)
-            if hi > lo:
-                first, last = math.ceil((lo - at) / period - 1e-15), math.floor((hi - at) / period + 1e-15)
-                if last < first:  # within one period
-                    out = self._pieces(out, layers, at + last * period, lo, hi, k, y)
-                else:
-                    out = self._pieces(out, layers, at + (first - 1) * period, lo, at + first * period, k, y)
-                    if last > first:
-                        cell = None
-                        for v in layers:
-                            cell = _cascade(cell, self.layer(v, v[3], k, y))
-                        whole = power(cell, last - first)
-                        out = _cascade(out, whole)
-                    out = self._pieces(out, layers, at + last * period, at + last * period, hi, k, y)
-            at = end
+        out = None
+        for layers, place in pieces(self.segments, start, stop):
+            if isinstance(place, int):
+                cell = None
+                for v in layers:
+                    cell = _cascade(cell, self.layer(v, v[3], k, y))
+                out = _cascade(out, power(cell, place))
+            else:
+                out = self._part_of_period(out, layers, place, k, y)
         return out
 
-    def _pieces(self, out: Any, layers: list, at: float, lo: float, hi: float, k: np.ndarray, y: np.ndarray) -> Any:
-        """Parts of the layers of one period that begins at `at`."""
+    def _part_of_period(self, out: Any, layers: list, ends: tuple[float, float], k: np.ndarray, y: np.ndarray) -> Any:
+        """Parts of the layers of one period, between depths from its begin."""
+        at, (lo, hi) = 0.0, ends
         for v in layers:
             d = min(at + v[3], hi) - max(at, lo)
-            if d > 1e-15 * self.thickness:
+            if d > 0:
                 out = _cascade(out, self.layer(v, d, k, y))
             at += v[3]
         return out

@@ -15,7 +15,7 @@ import numpy as np
 
 import beamprop as bp
 
-from .medium import Medium, power
+from .medium import Medium, pieces, power
 
 #: The most that a sheet's generator times its thickness may be, and the terms that its series takes for that: 2^28/28! is 1e-21.
 SHEET, TERMS = 2.0, 14
@@ -170,28 +170,21 @@ class SolidMedium(Medium):
 
     def part2(self, k: np.ndarray, y: np.ndarray, start: float, stop: float) -> Scatter2 | None:
         """What lies between two depths."""
-        out, at = None, 0.0
-        for layers, periods in self.segments:
-            period = sum(v[3] for v in layers)
-            lo, hi = max(start, at), min(stop, at + period * periods)
-            if hi > lo:
-                first, last = math.ceil((lo - at) / period - 1e-15), math.floor((hi - at) / period + 1e-15)
-                whole = [self.scatter(v, v[3], k, y) for v in layers] if last > first else []
-                if last < first:  # within one period
-                    out = self._parts(out, layers, at + last * period, (lo, hi), k, y)
-                else:
-                    out = self._parts(out, layers, at + (first - 1) * period, (lo, at + first * period), k, y)
-                    if whole:
-                        out = _cascade(out, power(functools.reduce(_cascade, whole, None), last - first, _cascade))
-                    out = self._parts(out, layers, at + last * period, (at + last * period, hi), k, y)
-            at += period * periods
+        out = None
+        for layers, place in pieces(self.segments, start, stop):
+            if isinstance(place, int):
+                whole = [self.scatter(v, v[3], k, y) for v in layers]
+                out = _cascade(out, power(functools.reduce(_cascade, whole, None), place, _cascade))
+            else:
+                out = self._part_of_period2(out, layers, place, k, y)
         return out
 
-    def _parts(self, out: Any, layers: list, at: float, ends: tuple[float, float], k: np.ndarray, y: np.ndarray) -> Any:
-        """Parts of the layers of one period that begins at `at`."""
+    def _part_of_period2(self, out: Any, layers: list, ends: tuple[float, float], k: np.ndarray, y: np.ndarray) -> Any:
+        """Parts of the layers of one period, between depths from its begin."""
+        at = 0.0
         for v in layers:
             d = min(at + v[3], ends[1]) - max(at, ends[0])
-            if d > 1e-15 * self.thickness:
+            if d > 0:
                 out = _cascade(out, self.scatter(v, d, k, y))
             at += v[3]
         return out
