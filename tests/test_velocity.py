@@ -142,7 +142,8 @@ def test_a_membrane_and_a_wall():
     np.testing.assert_allclose(ds.v_z[0], ds.v_z[1], rtol=1e-6)
     np.testing.assert_allclose(ds.p[1] - ds.p[0], 1j * W * 0.05 * ds.v_z[0], rtol=1e-6)
     wall = layers((HEAVY, 0.02), (bp.Fluid(0.0, 1e5), 0.03), (HEAVY, 0.02))
-    ds = bp.field(wall, beam, F, x, [0.02, 0.03, 0.04, 0.05 - 1e-12, 0.06], variables=FLOW)
+    # the last place of a depth 1e-12 before a face changes v_z there by 2e-5
+    ds = bp.field(wall, beam, F, x, [0.02, 0.03, 0.04, 0.05 - 1e-12, 0.06], variables=FLOW, rtol=1e-4)
     assert np.all(ds.p == 0)
     assert np.all(ds.intensity_z == 0)
     assert np.abs(ds.power_through).max() == 0

@@ -123,6 +123,16 @@ def next_smooth(n: int) -> int:
     return best
 
 
+def cosine_coefficients(values: np.ndarray) -> np.ndarray:
+    """Coefficients (N, ...) of the cosine series through values (N, ...) at (j + 1/2) pi/N, into the same array."""
+    from scipy.fft import dct
+
+    series = dct(values, type=2, axis=0, overwrite_x=True)
+    series *= 1 / len(values)
+    series[0] /= 2
+    return np.asarray(series)
+
+
 def cosine_series(values: np.ndarray, n: int) -> np.ndarray:
     """The cosine series through values (N,) at (j + 1/2) pi/N, at the angles i pi/n, i = 0 to n > N: (n + 1,)."""
     from scipy.fft import dct

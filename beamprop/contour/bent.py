@@ -11,7 +11,7 @@ from typing import NamedTuple
 from . import error, in_stretches
 from .check_points import Checks
 from .error import Compared
-from .paths import BentPlan
+from .paths import SLOPE, BentPlan
 from .quadrature import Quadrature
 from .search import (
     Planned,
@@ -33,6 +33,9 @@ SHRINKS, LOSSLESS_SHRINKS = 6, 2
 #: After more plans than this in a row that do not halve the error it is given up: 0.6^3 times as deep, a contour magnifies rounding by
 #: exp(0.2 DEEPEST) = 6 at most.
 MOST_IN_VAIN = 3
+#: An error that rounding does not make, 1e4 times that of a response, and by how much steeper a contour leaves the origin then: poles of layers
+#: that are ten times as fast as the medium in front lie a tenth of its wavenumber from the origin, above a contour that has hardly bent there.
+NO_ROUNDING, STEEPER = 1e-3, 8.0
 #: Above this an estimate does not tell by how many decades images have to fall.
 MEANINGLESS = 1e6
 
@@ -73,6 +76,8 @@ def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rto
         return None
     if edge > error.SHARE * rtol:
         return plan._replace(band=plan.band * 1.5)
+    if attempts.in_vain and attempts.wider and worst > NO_ROUNDING and plan.bend > 2 * plan.depth / SLOPE:
+        return plan._replace(bend=max(plan.depth / SLOPE, plan.bend / STEEPER))  # poles of fast layers, near the origin
     if attempts.in_vain and attempts.wider:  # a wider window does not help: rounding, magnified by exp(depth X)
         return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
     more = math.log(min(worst, MEANINGLESS) / (error.SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)

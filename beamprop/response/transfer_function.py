@@ -34,11 +34,12 @@ class TransferFunction:
     pressure: Callable[[SampledSlab, np.ndarray, np.ndarray], np.ndarray]
 
     def __call__(self, kx: np.ndarray, z: np.ndarray, shift: float = 0.0) -> np.ndarray:
-        """H(kx, z); with `shift` H at kx (1 + shift), w (1 - shift) and z (1 - shift/4): a second evaluation that shows rounding errors.
+        """H(kx, z); with `shift` H at kx (1 + shift), w (1 - shift) and z (1 + shift/4): a second evaluation that shows rounding errors.
 
-        That of z, a unit of its last place, shows in heavy layers, inside which p changes by more along z than a wave of k0 does.
+        That of z, a unit of its last place, shows in heavy layers, inside which p changes by more along z than a wave of k0 does. A depth on
+        a membrane, over which p jumps, lies behind it, and there it stays.
         """
-        return self.pressure(self.slab.perturbed(shift), kx * (1 + shift), z * (1 - shift / 4))
+        return self.pressure(self.slab.perturbed(shift), kx * (1 + shift), z * (1 + shift / 4))
 
 
 def through(s: SampledSlab, z0: float, quantity: str = "p") -> TransferFunction:

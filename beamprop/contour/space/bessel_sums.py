@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...arrays import fft
 from ...arrays.matmul import product
 
 #: Bessel functions of the orders beyond c + AIRY (c/2)^(1/3) are below 1e-15 at c, as Ai(AIRY) is (DLMF 9.7.5, 10.19.8).
@@ -127,14 +128,10 @@ def bessel_sums(k: np.ndarray, weight: np.ndarray, positions: np.ndarray, extent
 
 def _series(center: float, reach: float, count: int, places: tuple[np.ndarray, float]) -> np.ndarray:
     """Chebyshev coefficients in k of sqrt(k) H0(k r) exp(-i k m)/2, at positions and for their middle m: (count, N)."""
-    from scipy.fft import dct
     from scipy.special import hankel1e
 
     positions, middle = places
     k: Any = (center + reach * np.cos((np.arange(count) + 0.5) * math.pi / count))[:, None]
     values = hankel1e(0, k * positions) * (np.sqrt(k) / 2)
     values *= np.exp(1j * k * (positions - middle))
-    series = dct(values, type=2, axis=0, overwrite_x=True)
-    series *= 1 / count
-    series[0] /= 2
-    return np.asarray(series)
+    return fft.cosine_coefficients(values)
