@@ -154,7 +154,7 @@ def test_leaky_modes():
             ["--piston", "1cm", "--plot", "a.png"],
             "--plot: expected axes for two or three of --x, --y and --z, got one value",
         ),
-        (["--piston", "1cm", "--variables", "power_through"], "--variables: expected"),
+        (["--piston", "1cm", "--variables", "power"], "--variables: expected"),
         (
             ["--boundary", "periodic", "--period", "1cm"],
             "--period: expected two lengths (Lx, Ly) [m] where y is given, got 0.01",

@@ -68,15 +68,19 @@ class Layer:
         return np.linalg.solve(matrix, known[..., None])[..., 0].T, air, q
 
     def absorbed(self, k):
-        """Loss over the incident flux: the integral of omega (Im rho |v|^2 - Im(1/K) ... |p|^2)/2 over its thickness."""
-        (_, a, b, _), air, q = self.solved(k)
+        """Loss over the incident flux."""
+        return self.loss(k) / (np.sqrt(self.k0**2 - k**2) / (2 * self.omega * self.density))
+
+    def loss(self, k):
+        """The integral of omega (Im rho |v|^2 - Im(1/K) ... |p|^2)/2 over its thickness, for unit incident p."""
+        (_, a, b, _), _, q = self.solved(k)
         g, w = np.polynomial.legendre.leggauss(60)
         z, w = (g[:, None] + 1) * self.d / 2, w[:, None] * self.d / 2
         forth, back = a * np.exp(1j * q * z), b * np.exp(-1j * q * z)
         p, along, across = forth + back, 1j * q * (forth - back), 1j * k * (forth + back)
         speed2 = (np.abs(along) ** 2 + np.abs(across) ** 2) / np.abs(self.omega * self.rho) ** 2
         loss = self.omega / 2 * (self.rho.imag * speed2 + np.imag(1 / self.bulk) * np.abs(p) ** 2)
-        return np.sum(w * loss, axis=0) / (air.real / (2 * self.omega * self.density))
+        return np.sum(w * loss, axis=0)
 
 
 def azimuthal_mean(beam, k, directions=600):

@@ -71,7 +71,7 @@ def test_a_beam_of_three_dimensions_needs_y(beam, ask):
     [
         ({"boundary": "closed"}, "boundary: expected 'open' or 'periodic'"),
         ({"period": 2.0}, "period: expected none"),
-        ({"variables": "power_through"}, "variables: expected some of p, v_x, v_y, v_z"),
+        ({"variables": "power"}, "variables: expected some of p, v_x, v_y, v_z"),
         ({"average": "layer"}, "average: expected 'cell'"),
         ({"y": "wide"}, "y: expected"),
         ({"y": np.zeros((2, 2))}, "y: expected"),

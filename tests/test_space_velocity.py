@@ -102,10 +102,10 @@ def test_means_over_a_cell(y):
 
 def test_refusals_name_what_there_is():
     plate = bp.Slab(bp.Layer(bp.Solid(7900.0, 5900.0, 3200.0), 1e-3), background=bp.Fluid.from_speed(1000.0, 1500.0))
-    with pytest.raises(ValueError, match=r"got z = 0.0005 in a solid$"):  # there is no power_through to turn to
+    with pytest.raises(ValueError, match=r"got z = 0.0005 in a solid; power_through is the whole flux there$"):
         bp.field(plate, bp.GaussianBeam((0.01, 0.01)), 1e6, 0.0, 5e-4, y=0.0, variables="intensity")
-    said = r"^variables: expected some of p, v_x, v_y, v_z, u_x, .*, got 'power_through'"
+    said = r"^variables: expected some of p, v_x, v_y, v_z, u_x, .*, power_through, intensity, got 'power'"
     with pytest.raises(ValueError, match=said):
-        bp.field(LOSSY, BEAM, F, 0.0, 0.1, y=0.0, variables="power_through")
+        bp.field(LOSSY, BEAM, F, 0.0, 0.1, y=0.0, variables="power")
     with pytest.raises(ValueError, match=r"^variables: expected some of p, v_x, v_z, .*, got 'v_y'"):
         bp.field(LOSSY, bp.GaussianBeam(0.1), F, 0.0, 0.1, variables="v_y")

@@ -10,7 +10,6 @@ import numpy as np
 import xarray as xr
 
 from .. import memory, validate
-from ..fields.question import FieldQuestion
 from ..media.structures import Slab
 from ..progress import Progress, watched
 from ..sources.base import Beam
@@ -69,10 +68,11 @@ def field(
         * "u_x", "u_z" [m]: displacement, v = -i w u; "s_xz" [Pa]: shear stress, 0 in fluids. In solids p is -s_zz.
         * "intensity_x", "intensity_z" [W/m^2], all by "intensity": time-averaged intensity Re(p v*)/2. p and v keep half of rtol then.
           In solids, where shear stress has a part in it, it is refused.
-        * with y, "v_y", "u_y", "s_yz" and "intensity_y" as well, and no power_through.
-        * "power_through" [W/m]: time-averaged power through each whole plane along z, for each metre along y (with a period:
-          through one period), on (frequency, angle, z). Without loss, what a beam feeds into guided modes, which run along x for
-          ever, is left out; of two half-spaces and a slab without loss, all planes have the same.
+        * with y, "v_y", "u_y", "s_yz" and "intensity_y" as well.
+        * "power_through" [W/m], with y [W]: time-averaged power through each whole plane along z, without y for each
+          metre along y (with a period: through one period or cell), on (frequency, angle, z). Without loss, what a beam
+          feeds into guided modes, which run along the slab for ever, is left out; of two half-spaces and a slab without
+          loss, all planes have the same.
     component : "p", "v_x", "v_z", "u_x", "u_z" or "s_xz", optional
         The one variable of the dataset, instead of `variables`. All are defined in fluids, too, where s_xz is 0.
     y : float or 1-D array, m, optional
@@ -132,7 +132,7 @@ def field(
     for i, _ in enumerate(watched(progress, question.frequency, "frequencies")):
         row = averaged_row(question, i, names, average)
         errors.add(i, slice(None), row.fill(slice(None), slice(None), {name: v[i] for name, v in values.items()}))
-    if "power_through" in names and isinstance(question, FieldQuestion):
+    if "power_through" in names:
         values["power_through"] = powers(question, errors)
     for budget, scale in errors.worst_by_scale:
         checks.warn_if_inaccurate(budget, question.rtol, scale)

@@ -11,6 +11,7 @@ from .. import validate
 from ..contour import sums
 from ..fields.question import FieldQuestion
 from ..io import datasets
+from ..io.labels import label
 from ..media.planes import warn_of_stripes
 from ..media.structures import Slab
 from ..sources.base import Beam
@@ -105,6 +106,8 @@ def labelled(labels: Labels, errors: dict[str, np.ndarray], values: dict[str, np
         **more,
     )
     geometry = "2-D" if labels.azimuth is None else "3-D"
+    if geometry == "3-D" and "power_through" in ds:
+        ds["power_through"].attrs = label("power_through", in_space=True)
     ds.attrs |= {"boundary": labels.boundary, "slab_thickness": labels.slab.thickness, "geometry": geometry}
     if labels.period is not None:
         ds.attrs["period"] = labels.period

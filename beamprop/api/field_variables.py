@@ -16,14 +16,15 @@ from ..media.solid_runs import has_solids, in_solid
 from ..media.structures import Slab
 from ..profiles.plane_power import power_through_planes
 from ..profiles.power import PowerError
-from ..response.sampled_slab import sample
+from ..profiles.space_power import power_through_planes_in_space
+from ..response.sampled_slab import SampledSlab, sample
 from ..sources.angles import AngleInterpolation
 
 #: What can be asked for, in the order of a dataset; "intensity" stands for all of its components.
 VARIABLES = ("p", "v_x", "v_z", "u_x", "u_z", "s_xz", "intensity_x", "intensity_z", "power_through")
 IN_SPACE = (
     *("p", "v_x", "v_y", "v_z", "u_x", "u_y", "u_z", "s_xz", "s_yz"),
-    *("intensity_x", "intensity_y", "intensity_z"),
+    *("intensity_x", "intensity_y", "intensity_z", "power_through"),
 )
 INTENSITY = {f"intensity_{axis}": f"v_{axis}" for axis in "xyz"}
 #: Displacements are made of velocities: v = -i w u.
@@ -49,10 +50,9 @@ def checked_variables(variables: Any, slab: Slab, z: np.ndarray, known: tuple[st
             raise validate.refuse("variables", expected, name)
     chosen = tuple(v for v in known if v in names or (v in INTENSITY and "intensity" in names))
     if set(INTENSITY) & set(chosen) and (solid := in_solid(slab, z)).any():
-        whole = "; power_through is the whole flux there" if "power_through" in known else ""
         raise ValueError(
             f"variables: expected an intensity at z in fluids (p v lacks the part of the shear stress), got z = {z[solid][0]:g} "
-            f"in a solid{whole}"
+            "in a solid; power_through is the whole flux there"
         )
     return chosen
 
@@ -156,14 +156,26 @@ def no_errors(variables: tuple[str, ...], shape: tuple[int, ...]) -> Errors:
     return Errors({name: np.full(shape[:2], np.nan) for name in variables}, {})
 
 
-def powers(question: FieldQuestion, errors: Errors) -> np.ndarray:
-    """Power through the planes of a question on (frequency, angle, z) [W/m], with its errors."""
+def powers(question: FieldQuestion | SpaceQuestion | SumQuestion, errors: Errors) -> np.ndarray:
+    """Power through planes on (frequency, angle, z), [W/m] or in three dimensions [W], with its errors."""
     name, power = "power_through", np.empty(question.shape[:3])
     for i, frequency in enumerate(question.frequency):
         s = sample(question.slab, float(frequency), backward=True)
-        for j, angle in enumerate(question.angle):
-            source = AngleInterpolation(question.source, question.angle).at(float(angle))
-            power[i, j], error = power_through_planes(s, source, question.z, question.rtol, question.period)
+        for j in range(question.angle.size):
+            power[i, j], error = _through_planes(question, j, s)
             errors.total[name][i, j] = error.total
             errors.worst[name] = max(error, errors.worst.get(name, error), key=lambda e: float(np.max(e.total)))
     return power
+
+
+def _through_planes(
+    question: FieldQuestion | SpaceQuestion | SumQuestion, j: int, s: SampledSlab
+) -> tuple[np.ndarray, PowerError]:
+    """Power through the planes at angle j, and its error."""
+    z, rtol = question.z, question.rtol
+    if isinstance(question, SumQuestion):
+        return power_through_planes_in_space(s, question.source_at(j), z, rtol, question.period)
+    source = AngleInterpolation(question.source, question.angle).at(float(question.angle[j]))
+    if isinstance(question, SpaceQuestion):
+        return power_through_planes_in_space(s, source, z, rtol, question.period)
+    return power_through_planes(s, source, z, rtol, question.period)

@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 
 from .. import validate
-from ..fields.question import FieldQuestion
 from ..io.storage import check_target, save_blocks
 from ..media.structures import Slab
 from ..memory import check_field
@@ -105,7 +104,7 @@ def save_field(
     ]
     errors = no_errors(names, shape)
     rest = {}
-    if "power_through" in names and isinstance(question, FieldQuestion):
+    if "power_through" in names:
         rest["power_through"] = powers(question, errors)
     kept, whole = [isinstance(p, slice) for p in pick], (slice(None),) * len(shape[3:])
 

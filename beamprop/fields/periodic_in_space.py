@@ -140,20 +140,23 @@ def _up_to(
     period: tuple[float, float],
     end: float,
 ) -> PeriodicWaves:
-    box = np.clip(spectrum_of(sources, s.k0, CUT).box, -end, end)
+    orders = orders_within(np.clip(spectrum_of(sources, s.k0, CUT).box, -end, end), period, sources.beam.z0)
+    contour = Contour(orders.radii + 0j, np.ones(orders.radii.size))
+    quadrature = Quadrature(contour, uniform_budget(sources.requested.size, 0.0))
+    return PeriodicWaves(s.k0, sources, quadrature, places[1], places[0], orders)
+
+
+def orders_within(box: np.ndarray, period: tuple[float, float], z0: float) -> Orders:
+    """The plane waves between the least and largest kx, then ky (2, 2), of a source on z0; too many are refused."""
     count = float(np.prod(1 + np.ptp(box, axis=1) * period / (2 * np.pi))) if np.all(np.isfinite(box)) else math.inf
     if count > MOST_WAVES:
         raise ValueError(
             f"period: expected at most {MOST_WAVES:.3g} plane waves of a lattice, got {count:.3g} for {period}: take shorter lengths, or z "
-            f"farther behind the launch plane z0 = {sources.beam.z0:.9g}"
+            f"farther behind the launch plane z0 = {z0:.9g}"
         )
     kx, ky = (multiples(low, high, length) for (low, high), length in zip(box, period, strict=True))
     squares, radius_of = np.unique(kx[None, :] ** 2 + ky[:, None] ** 2, return_inverse=True)
-    radii = np.sqrt(squares)
-    orders = Orders(kx, ky, 1 / (period[0] * period[1]), radii, radius_of.reshape(ky.size, kx.size))
-    contour = Contour(radii + 0j, np.ones(radii.size))
-    quadrature = Quadrature(contour, uniform_budget(sources.requested.size, 0.0))
-    return PeriodicWaves(s.k0, sources, quadrature, places[1], places[0], orders)
+    return Orders(kx, ky, 1 / (period[0] * period[1]), np.sqrt(squares), radius_of.reshape(ky.size, kx.size))
 
 
 def _have_faded(waves: PeriodicWaves, transfer: TransferFunction, z: np.ndarray) -> bool:

@@ -15,6 +15,7 @@ from ..contour import summed
 from ..contour.error import ErrorBudget, uniform_budget
 from ..media.structures import Slab
 from ..sources.in_space import unit_vector
+from ..sources.sum_in_space import Part, SumInSpace
 from .in_space import PreparedInSpace, SpaceQuestion, prepare
 
 #: The most positions along x and along y of the fields that show the largest |p| of whole planes.
@@ -56,6 +57,13 @@ class SumQuestion:
     def each(self, rtol: float) -> list[SpaceQuestion]:
         """The questions of the sources, with an rtol."""
         return [dataclasses.replace(q, z=self.z, rtol=rtol, period=self.period) for q in self.questions]
+
+    def source_at(self, j: int) -> SumInSpace:
+        """The sum at angle j, about the middle of its sources' middles."""
+        middle = (np.min(self.middles, axis=0) + np.max(self.middles, axis=0)) / 2
+        each: list[Any] = [q.source.at_angle(float(q.angle[j])) for q in self.questions]
+        parts = tuple(Part(s, w, at - middle) for s, w, at in zip(each, self.weights, self.middles, strict=True))
+        return SumInSpace(parts, each[0].angle, each[0].azimuth)
 
     def prepared(self, i: int, quantity: str = "p") -> PreparedSum:
         """The contours for frequency i, one for each source; see `PreparedInSpace`."""

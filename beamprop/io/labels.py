@@ -108,6 +108,9 @@ ANSWERS: dict[str, tuple[str, str]] = {
     "centroid_out": ("m", "centroid of |p|^2 at the far face"),
 }
 
+#: Of fields in three dimensions, where it differs.
+IN_SPACE: dict[str, tuple[str, str]] = {"power_through": ("W", "time-averaged power through the plane along z")}
+
 #: Variables of the comparison of two fields a and b.
 COMPARISON: dict[str, tuple[str, str]] = {
     "relative_l2": ("1", "relative L2 error"),
@@ -135,7 +138,7 @@ COMPARISON: dict[str, tuple[str, str]] = {
 LABELS: dict[str, tuple[str, str]] = COORDINATES | PARAMETERS | ANSWERS | COMPARISON
 
 
-def label(name: str) -> dict[str, str]:
-    """Attributes (units, long_name) of a variable or coordinate."""
-    units, long_name = LABELS[name]
+def label(name: str, in_space: bool = False) -> dict[str, str]:
+    """Attributes (units, long_name) of a variable or coordinate, also of a field in three dimensions."""
+    units, long_name = (LABELS | IN_SPACE)[name] if in_space else LABELS[name]
     return {"units": units, "long_name": long_name}

@@ -10,13 +10,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..contour.error import SHIFT, ErrorBudget, uniform_budget
-from ..fields.in_space import driven_by
 from ..response import transfer_function
 from ..response.sampled_slab import SampledSlab
 from ..response.transfer_function import TransferFunction
-from ..sources.in_space import scattered_spectrum, unit_vector
-from ..sources.sum_in_space import SumInSpace, parts_of
+from ..sources.in_space import unit_vector
+from ..sources.sum_in_space import parts_of
 from . import power
+from .directions import Directions
 from .level_area import Area, area_above, connected
 from .measures import Side, any_beam, carried, unchanged
 from .power import NOTHING, PowerError, Radiated
@@ -27,12 +27,8 @@ from .windows import TAIL
 #: Widths of the principal axes that differ by less than this are equal, and their orientation rounding; so is the azimuth of a mean
 #: direction that is nearer to the normal.
 EQUAL = 1e-6
-#: Directions beyond those of the source's extent: its spectrum's harmonics fall off within them.
-MARGIN = 40
 #: Gauss nodes beyond half the turns of |p|^2 over a window: Bessel functions of so much higher order are 1e-16.
 BEYOND = 20
-#: Values of spectra that are held at a time: 32 MB.
-BLOCK = 1_000_000
 
 
 class Beamlet(NamedTuple):
@@ -204,56 +200,11 @@ def _principal(matrix: np.ndarray) -> tuple[float, float]:
 # --- power ------------------------------------------------------------------------------------------------
 
 
-class Directions(NamedTuple):
-    """Means over directions of what a source sends, at |k| that both quadrature rules, sides and moved last bits share."""
-
-    source: Any
-    slab: SampledSlab
-    known: dict[tuple[float, ...], np.ndarray]  #: by |k|, the wavenumber of the medium, and moved last bits, (8,) each
-
-    @property
-    def drive(self) -> TransferFunction:
-        """What drives a source; 1 of a sum, whose sources have it in their spectra."""
-        unit = TransferFunction(self.slab, unchanged)
-        return unit if isinstance(self.source, SumInSpace) else driven_by(self.source, unit)
-
-    def means(self, radii: np.ndarray, k: float, shift: float) -> np.ndarray:
-        """See `_by_direction`: (8, n)."""
-        if not isinstance(self.source, SumInSpace):  # whose rounding shows in the response alone
-            shift = 0.0
-        missing = np.array([radius for radius in radii.tolist() if (radius, k, shift) not in self.known])
-        if missing.size:
-            columns = _by_direction(self, missing, k, shift).T
-            self.known.update(
-                ((radius, k, shift), column) for radius, column in zip(missing.tolist(), columns, strict=True)
-            )
-        return np.array([self.known[radius, k, shift] for radius in radii.tolist()]).T
-
-    def spectrum(self, radii: np.ndarray, turn: np.ndarray, shift: float) -> np.ndarray:
-        """S at |k| (n,) and directions (m,): (n, m).
-
-        Of a sum with what drives each source, on the plane behind which all are.
-        """
-        # where sources cancel, rounding of their spectra shows with moved last bits
-        x, y = (np.multiply.outer(radii * (1 + shift), v(turn)) for v in (np.cos, np.sin))
-        s, total = self.slab, np.zeros(x.shape, complex)
-        for part in parts_of(self.source):
-            own = scattered_spectrum(part.source, x.ravel(), y.ravel(), s.k0).reshape(x.shape)
-            if not isinstance(self.source, SumInSpace):
-                return own
-            ahead = TransferFunction(s, partial(_ahead, distance=self.source.z0 - part.source.z0))
-            driven = driven_by(part.source, ahead)(radii.astype(complex), np.zeros(1), shift)[0]
-            total += part.weight * driven[:, None] * own * np.exp(-1j * (x * part.at[0] + y * part.at[1]))
-        return total
-
-
-def _ahead(s: SampledSlab, kx: np.ndarray, z: np.ndarray, distance: float) -> np.ndarray:
-    """H over a distance in the medium in front: (1, n)."""
-    return transfer_function.over_distance(s, kx, np.array([distance]))
-
-
 def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -> Radiated:
-    """What a source radiates from a side: the integral over |k| of the mean of |S|^2 over directions; means are those of `_by_direction`."""
+    """What a source radiates from a side: the integral over |k| of the mean of |S|^2 over directions.
+
+    Its means are those of `Directions.means`.
+    """
     k, source = s.largest_kx(side.behind), directions.source
     if k == 0:
         return NOTHING
@@ -271,26 +222,6 @@ def _radiated(s: SampledSlab, directions: Directions, side: Side, rtol: float) -
 
     count = 200 + 2 * k * (reach + s.thickness - source.z0)
     return power.radiated(density, lambda kx: density(kx, SHIFT), k, s.real_branches, count, rtol)
-
-
-def _by_direction(directions: Directions, radii: np.ndarray, k: float, shift: float) -> np.ndarray:
-    """Means over directions at |k| (n,) of |S|^2, and of it times x, y and z of the unit vector in a medium of wavenumber k, and times the angles
-    to the planes x = 0 and y = 0 less the source's own, and their squares: (8, n)."""
-    source = directions.source
-    count = 4 * math.ceil((MARGIN + 2 * float(radii.max()) * source.reach(1e-8)) / 4)  # x and y alike
-    turn = 2 * math.pi * np.arange(count) / count
-    own = [math.sin(math.radians(source.angle)) * v for v in unit_vector(source.azimuth)]
-    out = np.empty((8, radii.size))
-    block = max(1, BLOCK // count)
-    for start in range(0, radii.size, block):
-        part = slice(start, start + block)
-        x, y = (np.multiply.outer(radii[part], v(turn)) for v in (np.cos, np.sin))
-        strength = np.abs(directions.spectrum(radii[part], turn, shift)) ** 2
-        z = np.sqrt(np.maximum(k * k - radii[part] ** 2, 0.0))[:, None]
-        angles = [np.arcsin(np.clip(v / k, -1, 1)) - math.asin(a) for v, a in zip((x, y), own, strict=True)]
-        factors = (1.0, x / k, y / k, z / k, *angles, *(v**2 for v in angles))
-        out[:, part] = [np.mean(strength * factor, axis=1) for factor in factors]
-    return out
 
 
 def _direction(radiated: Radiated) -> tuple[np.ndarray, float, float]:
