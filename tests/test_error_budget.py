@@ -170,3 +170,20 @@ def test_a_field_that_is_not_finite_is_not_taken_for_a_dark_plane(monkeypatch):
     total = terms(checks, first, second._replace(fields=fields)).budget.total
     assert np.all(np.isinf(total[:, 1]))
     assert np.all(total[:, 0] < 1)
+
+
+def test_nodes_are_graded_finer_beside_a_pole_where_a_wider_window_does_not_help():
+    plan = PLAN._replace(sharp=1.0, grading=5.0)
+    attempts = after(1e-6, 1e-6)._replace(wider=True, circled=True)
+    finer = bent.next_plan(plan, 1e-6, 0.0, attempts, RTOL)
+    assert finer == plan._replace(grading=8.0)
+    shallower = bent.next_plan(finer, 1e-6, 0.0, attempts.before(finer, plan).after(1e-6, 1e-6), RTOL)
+    assert (shallower.depth, shallower.grading) == (0.6 * plan.depth, 8.0)
+
+
+def test_a_contour_bends_nearer_to_the_origin_where_a_wider_window_does_not_help():
+    attempts = after(0.1, 0.1)._replace(wider=True)
+    bend = 100 * PLAN.depth
+    steeper = bent.next_plan(PLAN._replace(bend=bend), 0.1, 0.0, attempts, RTOL)
+    assert steeper == PLAN._replace(bend=bend / 8)
+    assert bent.next_plan(PLAN._replace(bend=bend), 1e-4, 0.0, attempts, RTOL).depth < PLAN.depth

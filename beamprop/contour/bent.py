@@ -36,6 +36,8 @@ MOST_IN_VAIN = 3
 #: An error that rounding does not make, 1e4 times that of a response, and by how much steeper a contour leaves the origin then: poles of layers
 #: that are ten times as fast as the medium in front lie a tenth of its wavenumber from the origin, above a contour that has hardly bent there.
 NO_ROUNDING, STEEPER = 1e-3, 8.0
+#: By how much finer nodes are graded towards the origin where neither does: the error of a pole by their side falls to its 1.6th power.
+FINER = 1.6
 #: Above this an estimate does not tell by how many decades images have to fall.
 MEANINGLESS = 1e6
 
@@ -49,10 +51,19 @@ class Attempts(NamedTuple):
     wider: bool = (
         False  #: whether the window of the last plan was wider than that before: a band alone says nothing of windows
     )
+    closer: bool = False  #: whether the last plan was changed near the origin alone
+    circled: bool = False  #: whether the last plan's contour passes by poles on its wrong side
 
     def after(self, worst: float, smallest: float) -> Attempts:
         """The attempts after a plan with the error `worst`; `smallest` is the least of the plans before it, inf for the first."""
-        return self._replace(made=self.made + 1, in_vain=self.in_vain + 1 if worst > 0.5 * smallest else 0)
+        in_vain = self.in_vain + (not self.closer) if worst > 0.5 * smallest else 0
+        return self._replace(made=self.made + 1, in_vain=in_vain)
+
+    def before(self, plan: BentPlan, last: BentPlan) -> Attempts:
+        """The attempts before a plan that follows the last one."""
+        return self._replace(
+            wider=plan.window > last.window, closer=(plan.bend, plan.grading) != (last.bend, last.grading)
+        )
 
 
 def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rtol: float) -> BentPlan | None:
@@ -76,10 +87,16 @@ def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rto
         return None
     if edge > error.SHARE * rtol:
         return plan._replace(band=plan.band * 1.5)
-    if attempts.in_vain and attempts.wider and worst > NO_ROUNDING and plan.bend > 2 * plan.depth / SLOPE:
-        return plan._replace(bend=max(plan.depth / SLOPE, plan.bend / STEEPER))  # poles of fast layers, near the origin
-    if attempts.in_vain and attempts.wider:  # a wider window does not help: rounding, magnified by exp(depth X)
-        return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
+    if attempts.in_vain and (attempts.wider or attempts.closer):  # a wider window does not help
+        if not attempts.closer and worst > NO_ROUNDING and plan.bend > 2 * plan.depth / SLOPE:
+            return plan._replace(
+                bend=max(plan.depth / SLOPE, plan.bend / STEEPER)
+            )  # poles of fast layers, near the origin
+        if (
+            not attempts.closer and attempts.circled and plan.grading
+        ):  # a pole between the axis and the contour, beside both
+            return plan._replace(grading=plan.grading * FINER)
+        return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)  # rounding, magnified by exp(depth X)
     more = math.log(min(worst, MEANINGLESS) / (error.SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)
     return plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
 
@@ -114,10 +131,11 @@ def quadrature_on_bent_contour(search: Search, planned: Planned) -> tuple[Quadra
             best = _quadrature(planned, compared)
         if worst <= rtol and by_window is not None:
             return _good_by_itself(search, planned, by_window, best)
+        attempts = attempts._replace(circled=bool(planned.poles.poles))
         plan = next_plan(planned.plan, worst, edge, attempts, rtol)
         if plan is None:
             break
-        attempts = attempts._replace(wider=plan.window > planned.plan.window)
+        attempts = attempts.before(plan, planned.plan)
         planned = planned._replace(plan=plan)
     return best or _without_any(search, planned), planned
 

@@ -194,9 +194,16 @@ def field_sum(
 def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     """|p| of the propagating waves where the beam lands on each plane: errors are over the largest |p| of a plane, (Z,).
 
-    Rays of nine strong plane waves, of 65 where solids let narrow bands through, and panels over the strong part of the spectrum; rays that go too far are left out.
+    Rays of nine strong plane waves, and panels over the strong part of the spectrum; rays that go too far are left out. Solids let narrow bands
+    through, which may lie where little is launched: of them also rays of 129 plane waves down to 1e-9 of the strongest.
     """
-    wide, tilt = source.band(1e-3) - m.k0 * abs(source.sine), m.k0 * source.sine
+    strong = _largest_of_rays(m, source, z, 1e-3, 9)
+    return np.maximum(strong, _largest_of_rays(m, source, z, 1e-9, 129)) if has_solids(m) else strong
+
+
+def _largest_of_rays(m: Medium, source: Source, z: np.ndarray, level: float, number: int) -> np.ndarray:
+    """|p| where so many rays of the plane waves above a level land, (Z,)."""
+    wide, tilt = source.band(level) - m.k0 * abs(source.sine), m.k0 * source.sine
     lo, hi = max(tilt - wide, -0.995 * m.k0), min(tilt + wide, 0.995 * m.k0)
     if hi <= lo:
         return np.zeros(z.size)
@@ -204,11 +211,12 @@ def largest_elsewhere(m: Medium, source: Source, z: np.ndarray) -> np.ndarray:
     def h(k: np.ndarray) -> np.ndarray:
         return m.response(np.abs(k) + 0j, z, source.beam.z0)  # even in k
 
-    number = 65 if has_solids(m) else 9
     rays, step = np.linspace(0.95 * lo + 0.05 * hi, 0.05 * lo + 0.95 * hi, number), 1e-5 * m.k0
     x = np.nan_to_num(-np.angle(h(rays + step) / h(rays - step)) / (2 * step))  # (Z, rays)
     most = 4 * 800 / (hi - lo) - source.beam.reach(1e-3) - m.thickness
     x = np.where(np.abs(x) < most, x, 0.0)
+    if has_solids(m):  # what a resonance narrower than the rays' steps lets through lies between them
+        x = np.concatenate([x, np.linspace(x.min(axis=1), x.max(axis=1), number, axis=1)], axis=1)
     count = math.ceil(3 + (hi - lo) * (np.abs(x).max() + source.beam.reach(1e-3) + m.thickness) / 4)
     if count > 1500:
         return np.zeros(z.size)
