@@ -214,9 +214,11 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
     }
     table, place = tables.get(path.partition(".")[0], {}), document.get(path.partition(".")[0], {})
     for part, following in zip(path.split(".")[1:], [*path.split(".")[2:], ""], strict=True):
-        place = _inside(place, part)
+        inside, place = place, _inside(place, part)
         if part in table and not following:
             return table[part]
+        if isinstance(inside, list) and place is not None and table is parameters.LAYER and not following:
+            return _LAYER
         if part in kinds and isinstance(place, Mapping | list):
             table = kinds[part]
         elif not part.isdigit() or not isinstance(place, Mapping):
@@ -225,6 +227,24 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
     near = difflib.get_close_matches(path, known, 1)
     hint = f"did you mean {near[0]}?" if near else "such as slab.eta or slab.layer.2.thickness"
     raise ValueError(f"expected the path of a value in the file, got {path!r}; {hint}")
+
+
+def _layer(value: Any, name: str) -> Any:
+    """The words of a layer, as they are; refused if they are none."""
+    parameters.layer(value, name)
+    return value
+
+
+#: A layer as a value of its own.
+_LAYER = Parameter(None, _layer, "A layer in words.")
+
+
+def value_at(document: Mapping[str, Any], path: str) -> Any:
+    """The value at a dotted path, or none."""
+    place: Any = document
+    for part in path.split("."):
+        place = _inside(place, part)
+    return place
 
 
 def _inside(place: Any, part: str) -> Any:
