@@ -1,4 +1,4 @@
-"""Layers in words of a study file, swept as those in tables."""
+"""What a user wrote into study files: layers in words, swept as those in tables, and mistakes of every kind beside one another."""
 
 import numpy as np
 import pytest
@@ -59,3 +59,49 @@ def test_the_one_layer_in_words_is_swept(tmp_path):
 def test_wrong_sweeps_of_words(layer, path, values, where, message, tmp_path):
     said = wrong(tmp_path, WORDS.replace("LAYER", layer).replace("PATH", path).replace("VALUES", values))
     assert any(place.startswith(where) and message in text for place, text in said.items()), said
+
+
+WRONG = """
+[question]
+name = "NAME"
+frequency = "-1MHz"
+rtol = 2
+angle = 90
+[slab]
+layer = ["solid steel 5mm"]
+background = "water"
+[beam]
+piston = "-12.5mm"
+z0 = "3cm"
+"""
+
+
+def test_values_of_the_wrong_sign_are_named_together(tmp_path):
+    """Of a question, and of a source, whose place is looked at whatever else is wrong with it."""
+    said = wrong(tmp_path, WRONG.replace("NAME", "field"))
+    assert {path: text.partition(", got ")[2] for path, text in said.items()} == {
+        "question.frequency": "-1000000.0",
+        "question.angle": "90.0",
+        "question.rtol": "2.0",
+        "beam.piston": "-0.0125",
+        "beam.z0": "0.03",
+    }
+
+
+def test_unknown_names_hide_no_wrong_values(tmp_path):
+    """A name that is unknown in each table, and what is wrong beside it; plane waves may graze, and have no beam."""
+    text = WRONG.replace("NAME", "field").replace("piston", "pistn").replace("rtol = 2", "Y = 0")
+    said = wrong(tmp_path, text.replace("steel 5mm", "steel -5mm"))
+    assert said.keys() == {
+        "question.Y",
+        "question.frequency",
+        "question.angle",
+        "slab.layer.1.thickness",
+        "beam.pistn",
+        "beam.z0",
+    }
+    said = wrong(tmp_path, WRONG.replace("NAME", "scattering").partition("[beam]")[0].replace("rtol = 2", ""))
+    assert said.keys() == {"question.frequency"}
+    said = wrong(tmp_path, WRONG.replace('background = "water"', "eta = 2").replace("NAME", "field"))
+    assert said["slab.eta"] == "expected to be left out beside layer, got 2"  # which is seen of the whole table
+    assert len(said) == 6

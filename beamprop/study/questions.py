@@ -112,14 +112,20 @@ def ask(description: Description, progress: Progress = False) -> xr.Dataset:
 
 def slab_of(description: Description) -> tuple[Slab, parameters.Design]:
     """The slab, and what defaults are taken by."""
-    table = description.get("slab", {})
-    slab = parameters.stack(table) if "stack" in table else parameters.slab(table)
-    if "tolerance" in description:
-        slab = _copy_of(slab, read(description["tolerance"], TOLERANCE, "tolerance"))
+    table, slab = description.get("slab", {}), structure_of(description)
     around = {key: value for key, value in table.items() if key != "stack"} | (
         {"layers": ""} if "stack" in table else {}
     )
     return slab, parameters.design(around, slab.before, arguments(description)["frequency"])
+
+
+def structure_of(description: Description) -> Slab:
+    """The slab, whatever is asked of it."""
+    table = description.get("slab", {})
+    slab = parameters.stack(table) if "stack" in table else parameters.slab(table)
+    if "tolerance" in description:
+        slab = _copy_of(slab, read(description["tolerance"], TOLERANCE, "tolerance"))
+    return slab
 
 
 def _copy_of(slab: Slab, values: Mapping[str, Any]) -> Slab:
