@@ -1,6 +1,7 @@
 """What the command says and does on a terminal: help, completion, signals, pipes, progress."""
 
 import os
+import re
 import shlex
 import signal
 import subprocess
@@ -10,9 +11,11 @@ import time
 import pytest
 from click.testing import CliRunner
 from command import COMMAND, good
+from source_tree import CHECKOUT
 from versions import names
 
 from beamprop.cli import main
+from beamprop.io.exports import WRITTEN
 
 PROCESS = [sys.executable, "-c", COMMAND]
 
@@ -36,6 +39,16 @@ def test_every_help_has_an_example_that_parses_and_a_link(name, tmp_path, monkey
     if name not in ("help", "convert", "run", "check", "init"):
         assert text.index("Output:") < text.index("Help:")
         assert "is replaced" in " ".join(text.split())
+
+
+@pytest.mark.parametrize("name", ["field", "bloch", "convert"])
+def test_every_ending_that_is_written_is_named(name):
+    text = good(name, "--help").stdout
+    assert [ending for ending in WRITTEN if not re.search(rf"{re.escape(ending)}\b", text)] == []
+    page = (CHECKOUT / "docs" / "study-files.md").read_text(encoding="utf-8")
+    assert [ending for ending in WRITTEN if not re.search(rf"{re.escape(ending)}\b", page)] == []
+    page = (CHECKOUT / "docs" / "guide.md").read_text(encoding="utf-8").partition("## Files")[2]
+    assert [ending for ending in WRITTEN if f"`{ending}`" not in page] == []
 
 
 def test_help_of_everything_and_of_nothing():

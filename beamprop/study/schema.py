@@ -19,7 +19,9 @@ from .questions import LATERAL, OF_BEAMS, QUESTIONS, TOLERANCE, lateral_of, slab
 
 #: Where answers go.
 OUTPUT: dict[str, Parameter] = {
-    "file": Parameter(None, parameters.text, "The dataset: .nc, .zarr, .mat, .vti, .vtr or .csv."),
+    "file": Parameter(
+        None, parameters.text, "The dataset: .nc (or .nc4, .netcdf, .h5), .zarr, .mat, .vti, .vtr or .csv."
+    ),
     "plot": Parameter(None, parameters.text, "A picture: .png, .svg or .pdf."),
     **parameters.PICTURE,
     "band": Parameter(
