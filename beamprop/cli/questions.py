@@ -69,14 +69,14 @@ def asking(name: str, o: dict[str, Any]) -> Callable[[], xr.Dataset]:
 @option(
     "--air-distance",
     kind=LENGTH,
-    text="Of the comparison without the slab [m].",
+    text="Of the comparison without the slab, fwhm_air, in the medium in front [m].",
     shown="two wavelengths",
 )
 @output("along", "plot_width")
 def beam_width(**o: Any) -> None:
     """Beam widths by frequency or angle.
 
-    The paper's Fig. 6.
+    The paper's Fig. 6. fwhm_air is without the slab, in the medium in front, whatever it is.
     """
     axes = {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]}
     check_axes(o, axes)

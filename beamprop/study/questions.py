@@ -64,7 +64,11 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         "average": Parameter(None, parameters.as_it_is, "Mean over a cell about each plane.", words=("cell",)),
     },
     "beam_width": _BEAM
-    | {"air_distance": Parameter(None, parameters.length, "Of the comparison without the slab [m].")},
+    | {
+        "air_distance": Parameter(
+            None, parameters.length, "Of the comparison without the slab, in the medium in front [m]."
+        )
+    },
     "beam_measures": _BEAM | {"window": Parameter(None, parameters.length, "Half-width of the window [m].")},
     "scattering": _FREQUENCY | {name: _axis(name) for name in LATERAL},
     "bloch": _FREQUENCY | {"kx_over_k0": _axis("kx_over_k0")},
