@@ -34,6 +34,12 @@ def test_along_one_axis_there_are_magnitude_and_phase():
     assert "estimated error" in out
 
 
+def test_at_one_place_there_are_both_forms_of_the_number():
+    p = of_python(0.0, 0.01).item()
+    lines = good(*SMALL, "--x", "0", "--z", "1cm").stdout.splitlines()
+    assert lines[1:3] == [f"p {p:.6g} Pa", f"|p| {abs(p):.6g} Pa, arg p {np.degrees(np.angle(p)):.6g} degree"]
+
+
 def test_in_three_dimensions_too():
     options = [
         "--layer",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -33,8 +35,12 @@ def field(ds: xr.Dataset) -> str:
 
 
 def _at_one_place(name: str, v: xr.DataArray) -> str:
-    said = f"{name} {v.item():.6g} {v.attrs['units']}"
-    return f"{said}, |{name}| {abs(v.item()):.6g} {v.attrs['units']}" if v.dtype.kind == "c" else said
+    unit = v.attrs["units"]
+    said = f"{name} {v.item():.6g} {unit}"
+    if v.dtype.kind != "c":
+        return said
+    degrees = math.degrees(cmath.phase(v.item()))
+    return f"{said}\n|{name}| {abs(v.item()):.6g} {unit}, arg {name} {degrees:.6g} degree"
 
 
 def _sizes(ds: xr.Dataset, names: list[str]) -> list[str]:
