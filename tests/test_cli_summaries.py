@@ -95,6 +95,13 @@ def test_real_variables_and_planes_are_shown_as_they_are():
     assert "intensity_x, intensity_z on (z 2, x 30)\npower_through on (z 2)\n" in sizes
 
 
+def test_of_a_map_that_is_in_a_file_alone_there_are_the_sizes(tmp_path):
+    typed = ["--x", "0,5cm", "--z", "0,1cm,5cm", "--memory", "1", "--output", tmp_path / "a.nc"]
+    out = good(*SMALL, *typed, "--variables", "p,power_through").stdout
+    assert "p on (z 3, x 2)\n" in out
+    np.testing.assert_allclose(np.array(rows(out))[:, 1], bp.load(tmp_path / "a.nc").power_through, rtol=1e-5)
+
+
 STUDY = """
 [question]
 name = "NAME"

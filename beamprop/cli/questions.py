@@ -175,7 +175,9 @@ def field(**o: Any) -> None:
         {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None and n != "y" else o[n] for n in "xyz"},
         field=True,
     )
-    answer(o, ask, drawing("field", o), summaries.field, saved=o["memory"] is not None)
+    saved = o["memory"] is not None
+    summary = (lambda ds: summaries.written(ds, variables)) if saved else summaries.field
+    answer(o, ask, drawing("field", o), summary, saved)
 
 
 #: What a plane wave may be given by.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING
 
 from .answer import table, units
@@ -14,6 +14,12 @@ if TYPE_CHECKING:
 
 #: So many places of a field are shown one by one, on one axis evenly spread where there are more.
 PLACES = 20
+
+
+def written(ds: xr.Dataset, variables: Collection[str]) -> str:
+    """Of a field that is in a file alone: the axes of what is there, beside what is held."""
+    sizes, there = ", ".join(f"{d} {n}" for d, n in ds.sizes.items()), [name for name in variables if name not in ds]
+    return "\n".join(([f"{', '.join(there)} on ({sizes})"] if there and sizes else []) + [field(ds)])
 
 
 def field(ds: xr.Dataset) -> str:
