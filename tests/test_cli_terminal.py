@@ -1,18 +1,23 @@
 """What the command says and does on a terminal: help, completion, signals, pipes, progress."""
 
 import os
+import re
 import shlex
 import signal
 import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from command import COMMAND, good
+from source_tree import CHECKOUT
 from versions import names
 
+import beamprop as bp
 from beamprop.cli import main
+from beamprop.io.exports import WRITTEN
 
 PROCESS = [sys.executable, "-c", COMMAND]
 
@@ -36,6 +41,39 @@ def test_every_help_has_an_example_that_parses_and_a_link(name, tmp_path, monkey
     if name not in ("help", "convert", "run", "check", "init"):
         assert text.index("Output:") < text.index("Help:")
         assert "is replaced" in " ".join(text.split())
+
+
+@pytest.mark.parametrize("name", ["field", "bloch", "convert"])
+def test_every_ending_that_is_written_is_named(name):
+    text = good(name, "--help").stdout
+    assert [ending for ending in WRITTEN if not re.search(rf"{re.escape(ending)}\b", text)] == []
+    page = (CHECKOUT / "docs" / "study-files.md").read_text(encoding="utf-8")
+    assert [ending for ending in WRITTEN if not re.search(rf"{re.escape(ending)}\b", page)] == []
+    page = (CHECKOUT / "docs" / "guide.md").read_text(encoding="utf-8").partition("## Files")[2]
+    assert [ending for ending in WRITTEN if f"`{ending}`" not in page] == []
+
+
+def test_air_in_a_name_is_the_medium_in_front():
+    """As --air-distance measures it: in water, what the width is two wavelengths of water away."""
+    assert "in the medium in front" in " ".join(good("beam_width", "--help").stdout.partition("Options")[0].split())
+    typed = [
+        "--layer",
+        "steel 1mm",
+        "--background",
+        "water",
+        "--frequency",
+        "1MHz",
+        "--fwhm",
+        "2mm",
+        "--air-distance",
+        "20mm",
+    ]
+    water = bp.material("water")
+    profile = bp.field(
+        bp.Slab.uniform(water, 0.02, water, water), bp.GaussianBeam(0.002), 1e6, np.linspace(-0.02, 0.02, 2001), 0.02
+    )
+    said = good("beam_width", *typed).stdout.partition("fwhm_air")[2].split()[0]
+    assert float(said) == pytest.approx(100 * float(bp.fwhm(profile.p)), rel=1e-4)
 
 
 def test_help_of_everything_and_of_nothing():

@@ -193,6 +193,30 @@ def test_a_refusal_names_the_key(maker, key, value, said):
         MAKERS[maker]({key: value})
 
 
+@pytest.mark.parametrize(
+    ("maker", "key", "value", "unit"),
+    [
+        ("axes", "frequency", "1mhz", "MHz"),
+        ("axes", "frequency", "1kHz:-1e3KHZ:3", "kHz"),
+        ("axes", "x", "1mm,2MM", "mm"),
+        ("axes", "z", ["1mm", "2Cm"], "cm"),
+        ("slab", "design_frequency", "2500hz", "Hz"),
+        ("beam", "fwhm", "3CM", "cm"),
+        ("beam", "bowl", "6cm,6Mm", "mm"),
+        ("slab", "layer", "water 2MM", "mm"),
+    ],
+)
+def test_a_unit_in_letters_of_the_wrong_size(maker, key, value, unit):
+    with pytest.raises(ValueError, match=rf", got .*; did you mean {unit}\?$"):
+        MAKERS[maker]({key: value})
+
+
+@pytest.mark.parametrize("value", ["1a", "2m", "1 parsec", "", "1xMHz"])
+def test_no_unit_is_guessed(value):
+    with pytest.raises(ValueError, match=f", got '{value}'$"):
+        parameters.frequency(value, "frequency")
+
+
 def test_axes_that_do_not_fit():
     """The key, and the count that is too large."""
     with pytest.raises(ValueError, match=r"^x: expected a question that fits.* the 1000000000000 numbers of '0:1:10"):

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from source_tree import CHECKOUT
+from study_texts import written, wrong
 
 import beamprop as bp
 from beamprop.study import files, predict
@@ -63,18 +64,6 @@ SAID = {
     "output.fil": "did you mean file?",
     "output.workers": "expected a whole number of at least 1, got 0",
 }
-
-
-def written(folder, text, name="study.toml"):
-    (folder / name).write_text(text, encoding="utf-8")
-    return folder / name
-
-
-def wrong(folder, text):
-    """Path -> what is said of each mistake in a file."""
-    with pytest.raises(files.Mistakes) as caught:
-        files.read(written(folder, text))
-    return dict(str(mistake).split(": ", 1) for mistake in caught.value.wrong)
 
 
 def test_twenty_mistakes_give_twenty_messages(tmp_path):

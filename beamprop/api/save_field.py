@@ -53,7 +53,7 @@ def save_field(
     Parameters
     ----------
     path : path
-        Ending in .nc (netCDF) or .zarr; replaced if it exists, once the new one is complete.
+        Ending in .nc (netCDF; also .nc4, .netcdf or .h5) or .zarr; replaced if it exists, once the new one is complete.
     slab, beam, frequency, x, z, angle, boundary, period, rtol, variables, average, y, azimuth
         As in `field`.
     memory : float, bytes

@@ -1,7 +1,7 @@
 """The command `beamprop`. Data go to stdout, progress and warnings to stderr; wrong use exits with 2.
 
 Everything heavy is imported inside the commands, so that ``beamprop --help`` is instant. options.py: what may be typed.
-questions.py: the questions. study.py: study files. explore.py: the page. files.py: comparison and conversion. answer.py: stdout and files. failures.py: what goes wrong.
+questions.py: the questions. study.py: study files. explore.py: the page. files.py: comparison and conversion. answer.py: stdout and files. summaries.py: what is said of each answer. failures.py: what goes wrong.
 commands.py: help and signals.
 """
 

@@ -150,19 +150,19 @@ def _spread(size: int, most: int) -> list[int]:
     return list(range(size)) if size <= most else sorted({round(i * (size - 1) / (most - 1)) for i in range(most)})
 
 
-def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0) -> str:
+def table(ds: xr.Dataset, names: tuple[str, ...], scale: float = 1.0, rows: int = 0) -> str:
     """Variables of a dataset as text: along an axis a column each, on two axes a table each; apart by what they depend on."""
     ds = ds[list(names)] * scale
     kinds = list(dict.fromkeys(ds[n].dims for n in names))
     if len(kinds) > 1:
-        return "\n\n".join(table(ds, tuple(n for n in names if ds[n].dims == kind)) for kind in kinds)
+        return "\n\n".join(table(ds, tuple(n for n in names if ds[n].dims == kind), rows=rows) for kind in kinds)
     dims = list(ds[names[0]].dims)
     if not dims:
         return "\n".join(f"{n:22s} {float(ds[n]):.6g}" for n in names)
     if len(dims) == 1:
-        return _text(ds.to_dataframe()[list(names)], ROWS, len(names))
+        return _text(ds.to_dataframe()[list(names)], rows or ROWS, len(names))
     return "\n\n".join(
-        f"{n}\n" + _text(ds[n].to_series().unstack(dims[-1], sort=False), ROWS_EACH, COLUMNS) for n in names
+        f"{n}\n" + _text(ds[n].to_series().unstack(dims[-1], sort=False), rows or ROWS_EACH, COLUMNS) for n in names
     )
 
 

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 def compare(a: Path, b: Path, tolerance: float | None, rescale: bool, grid: Any, **o: Any) -> None:
     """Measure the field in file B against A.
 
-    Files are .nc, .zarr, .mat, or COMSOL's text. Scattered nodes are compared as they are with a field of this command, which is
-    evaluated there; --grid interpolates them.
+    Files are .nc (or .nc4, .netcdf, .h5: the same), .zarr, .mat, or COMSOL's text. Scattered nodes are compared as they
+    are with a field of this command, which is evaluated there; --grid interpolates them.
     """
 
     def ask() -> xr.Dataset:
@@ -92,8 +92,8 @@ def _widths(ds: xr.Dataset) -> list[str]:
 def convert(source: Path, target: Path, quiet: bool, grid: Any, **o: Any) -> None:
     """Bring a file to another format.
 
-    From COMSOL's text, .nc, .zarr or .mat to .nc, .zarr, .mat (MATLAB), .vti, .vtr (ParaView) or .csv; a file or store of that name
-    is replaced.
+    From COMSOL's text, .nc, .zarr or .mat to .nc, .zarr, .mat (MATLAB), .vti, .vtr (ParaView) or .csv; .nc4, .netcdf
+    and .h5 are the same as .nc. A file or store of that name is replaced.
     """
     from ..io.exports import write
 

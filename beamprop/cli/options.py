@@ -234,7 +234,7 @@ def output(*picture: str) -> Decorator:
             "-o",
             kind=target(),
             group="Output",
-            text="Write the dataset to this .nc, .zarr, .mat, .vti, .vtr or .csv (of one axis); a file or store of that name is replaced.",
+            text="Write the dataset to this .nc (or .nc4, .netcdf, .h5: the same), .zarr, .mat, .vti, .vtr or .csv (of one axis); a file or store of that name is replaced.",
         ),
         option(
             "--save-study",

@@ -10,7 +10,8 @@ import click
 
 from .. import parameters
 from ..parameters import is_several, spaced
-from .answer import answer, check_output, check_text, progress, table, units
+from . import summaries
+from .answer import answer, check_output, check_text, progress
 from .commands import command
 from .failures import typed
 from .options import (
@@ -68,20 +69,19 @@ def asking(name: str, o: dict[str, Any]) -> Callable[[], xr.Dataset]:
 @option(
     "--air-distance",
     kind=LENGTH,
-    text="Of the comparison without the slab [m].",
+    text="Of the comparison without the slab, fwhm_air, in the medium in front [m].",
     shown="two wavelengths",
 )
 @output("along", "plot_width")
 def beam_width(**o: Any) -> None:
     """Beam widths by frequency or angle.
 
-    The paper's Fig. 6.
+    The paper's Fig. 6. fwhm_air is without the slab, in the medium in front, whatever it is.
     """
     axes = {"frequency": [] if o["frequency"] is None else o["frequency"], "angle": o["angle"]}
     check_axes(o, axes)
     check_output(o, axes)
-    names = ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air")
-    answer(o, asking("beam_width", o), drawing("beam_width", o), lambda ds: "widths [cm]\n" + table(ds, names, 100.0))
+    answer(o, asking("beam_width", o), drawing("beam_width", o), summaries.beam_width)
 
 
 @command("beam_measures", example="beamprop beam_measures --angle 30 --lossless --periods 20 --window 1")
@@ -102,10 +102,7 @@ def beam_measures(**o: Any) -> None:
     axes = {"frequency": o["frequency"], "angle": o["angle"]}
     check_axes(o, axes)
     check_output(o, axes | {"side": []})
-    names = ("fwhm", "width_1e2", "centroid", "lateral_shift", "power", "divergence")
-    answer(
-        o, asking("beam_measures", o), drawing("beam_measures", o), lambda ds: f"{units(ds, names)}\n{table(ds, names)}"
-    )
+    answer(o, asking("beam_measures", o), drawing("beam_measures", o), summaries.beam_measures)
 
 
 @command(example="beamprop field --layer 'density=1000 speed=1480 2mm' --frequency 1MHz --plot beam.png")
@@ -178,23 +175,9 @@ def field(**o: Any) -> None:
         {n: o[n] for n in ("frequency", "angle")} | {n: [] if o[n] is None and n != "y" else o[n] for n in "xyz"},
         field=True,
     )
-    answer(o, ask, drawing("field", o), lambda ds: _field_summary(ds, variables), saved=o["memory"] is not None)
-
-
-def _field_summary(ds: xr.Dataset, variables: list[str]) -> str:
-    sizes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items())
-    on_planes = [n for n in variables if n == "power_through"]
-    on_points = [n for n in variables if n not in on_planes]
-    sizes_of_planes = ", ".join(f"{d} {n}" for d, n in ds.sizes.items() if d not in ("x", "y"))
-    parts = ((on_points, sizes), (on_planes, sizes_of_planes))
-    lines = [f"{', '.join(names)} on ({axes})" for names, axes in parts if names and axes]
-    for name, v in ds.data_vars.items():
-        if not str(name).startswith("error_estimate"):
-            said = f"largest |{name}| {float(abs(v).max()):.6g}" if sizes else f"{name} {v.item():.6g}"
-            lines.append(f"{said} {v.attrs['units']}")
-    if "error_estimate" in ds:
-        lines.append(f"estimated error {float(ds['error_estimate'].max()):.1e} of the largest |p| of a plane")
-    return "\n".join(lines)
+    saved = o["memory"] is not None
+    summary = (lambda ds: summaries.written(ds, variables)) if saved else summaries.field
+    answer(o, ask, drawing("field", o), summary, saved)
 
 
 #: What a plane wave may be given by.
@@ -221,8 +204,7 @@ def scattering(**o: Any) -> None:
         raise click.UsageError(f"{', '.join(map(typed, axes))}: expected exactly one of them, got {len(axes)}")
     check_axes(o, {"frequency": o["frequency"]} | axes)
     check_output(o, {"frequency": o["frequency"]} | axes)
-    names = ("transmissivity", "reflectivity", "energy_transmission", "absorption")
-    answer(o, asking("scattering", o), drawing("scattering", o), lambda ds: table(ds, names))
+    answer(o, asking("scattering", o), drawing("scattering", o), summaries.scattering)
 
 
 @command(example="beamprop bloch --eta 1/20 --plot contour.png")
@@ -237,14 +219,10 @@ def bloch(**o: Any) -> None:
     """
     kx_over_k0 = spaced(-10.0, 10.0, 801) if o["kx_over_k0"] is None else o["kx_over_k0"]
 
-    def summary(ds: xr.Dataset) -> str:
-        kz = ds["kz_over_k0"]
-        return table(ds.assign({"Re kz/k0": kz.real, "Im kz/k0": kz.imag}), ("Re kz/k0", "Im kz/k0"))
-
     axes = {"frequency": o["frequency"], "kx_over_k0": kx_over_k0}
     check_axes(o, axes)
     check_output(o, axes)
-    answer(o, asking("bloch", o), drawing("bloch", o), summary)
+    answer(o, asking("bloch", o), drawing("bloch", o), summaries.bloch)
 
 
 @command("guided_modes", example="beamprop guided_modes --lossless --periods 20")
@@ -260,14 +238,8 @@ def guided_modes(**o: Any) -> None:
     Each with the direction of its energy.
     """
 
-    def summary(ds: xr.Dataset) -> str:
-        if ds.sizes["mode"] == 0:
-            return "no guided mode in the strip"
-        k = ds["kx_over_k0"]
-        return table(ds.assign({"Re kx/k0": k.real, "Im kx/k0": k.imag}), ("Re kx/k0", "Im kx/k0", "direction"))
-
     check_output(o, {"frequency": o["frequency"], "mode": []})
-    answer(o, asking("guided_modes", o), drawing("guided_modes", o), summary)
+    answer(o, asking("guided_modes", o), drawing("guided_modes", o), summaries.guided_modes)
 
 
 COMMANDS = (field, beam_width, beam_measures, scattering, bloch, guided_modes)

@@ -18,6 +18,7 @@ from .commands import command
 from .failures import attempt
 from .options import COUNT, SOURCE, Checked, option, switch, words
 from .pictures import drawing
+from .summaries import SUMMARIES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -120,7 +121,9 @@ def _way(o: dict[str, Any]) -> dict[str, Any]:
 
 
 def _summary(study: StudyFile, ds: xr.Dataset) -> str:
-    """The numbers where they are on one axis; else what there is."""
+    """Of a question what its command says; of a sweep the numbers where they are on one axis, else what there is."""
+    if not study.axes:
+        return SUMMARIES[study.name](ds)
     names = tuple(str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fi")
     if (
         len(names) == len(ds.data_vars) > 0

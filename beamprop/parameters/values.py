@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
@@ -35,6 +36,17 @@ def _read(text: str, kind: Callable[[str], T], units: Mapping[str, int]) -> T:
     return value * 10.0**power if power >= 0 else value / 10.0**-power  # dividing, 2 mm are 0.002 to the last bit
 
 
+def _no_number(name: str, expected: str, text: str, units: Mapping[str, int]) -> ValueError:
+    """The error to raise of a text; with the unit that was meant where its letters have the wrong size, as in 1mhz."""
+    from .. import validate
+
+    error = validate.refuse(name, expected, text)
+    by_letters = {unit.casefold(): unit for unit in units}
+    wrong = [word.casefold() for word in re.findall(r"[^\W\d_]+", text) if word not in units]
+    meant = next((by_letters[word] for word in wrong if word in by_letters), None)
+    return error if meant is None else ValueError(f"{error}; did you mean {meant}?")
+
+
 def number(value: Any, name: str) -> complex:
     """A complex number, also as text: 0.05+0.05j, or with i, or 1/20; a float where it is real."""
     from .. import validate
@@ -60,7 +72,7 @@ def real(
         try:
             return _read(value, float, units or {})
         except ValueError:
-            raise validate.refuse(name, expected, value) from None
+            raise _no_number(name, expected, value, units or {}) from None
     scalar = _scalar(value, name, "a real number")
     if isinstance(scalar, complex):
         raise validate.refuse(name, "a real number", value)
@@ -160,7 +172,7 @@ def axis(value: Any, name: str, units: Mapping[str, int] | None = None) -> Axis:
         if size < 1 or (even != value and not 0 < start * stop < math.inf):
             raise ValueError
     except ValueError:
-        raise validate.refuse(name, "a number, a,b,c or start:stop:count", value) from None
+        raise _no_number(name, "a number, a,b,c or start:stop:count", value, units or {}) from None
     from .. import memory
 
     memory.check(name, 32.0 * size, f"the {size} numbers of {value!r}", "take fewer")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import hashlib
 import os
@@ -17,7 +18,7 @@ from ..progress import Progress
 from . import questions
 from . import store as stores
 from .axes import BOOKKEEPING
-from .schema import OUTPUT, Mistake, at, mistakes, parameter_at, together
+from .schema import OUTPUT, Mistake, at, mistakes, parameter_at, together, value_at
 from .sweep import sweep
 
 if TYPE_CHECKING:
@@ -107,6 +108,7 @@ def read(path: str | Path) -> StudyFile:
         raise Mistakes(path, [Mistake("TOML", f"expected a file in its form, got: {error}")]) from None
     document = _rooted(document, path.parent)
     wrong = mistakes(document)
+    document = _with_tables(document)
     axes, paths, wrong_axes = _axes(document)
     wrong += wrong_axes
     wrong += together(_put_in(document, axes, paths), wrong)
@@ -177,6 +179,25 @@ def _axes(document: Mapping[str, Any]) -> tuple[dict[str, list[Any]], dict[str, 
         else:
             axes[name], paths[name] = values, path
     return axes, paths, wrong
+
+
+def _with_tables(document: dict[str, Any]) -> dict[str, Any]:
+    """The document with a table in place of the words of each layer that a sweep goes into, for words have no place for a value."""
+    changed, table = copy.deepcopy(document), document.get("sweep", {})
+    for path, _ in _flat(table) if isinstance(table, Mapping) else ():
+        before, within, after = path.partition(".layer.")
+        number, _, key = after.partition(".")
+        home = value_at(changed, before) if within and number.isdigit() else None
+        if not isinstance(home, dict):
+            continue
+        layers = home.get("layer")
+        layers = [layers] if isinstance(layers, str | Mapping) else layers
+        if isinstance(layers, list) and 0 < int(number) <= len(layers):
+            home["layer"] = layers
+            if key and isinstance(words := layers[int(number) - 1], str):
+                with contextlib.suppress(ValueError):  # words that are no layer are a mistake of their own
+                    layers[int(number) - 1] = parameters.described(words, "layer", parameters.LAYER)
+    return changed
 
 
 def _flat(table: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:

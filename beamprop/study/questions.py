@@ -64,7 +64,11 @@ QUESTIONS: dict[str, dict[str, Parameter]] = {
         "average": Parameter(None, parameters.as_it_is, "Mean over a cell about each plane.", words=("cell",)),
     },
     "beam_width": _BEAM
-    | {"air_distance": Parameter(None, parameters.length, "Of the comparison without the slab [m].")},
+    | {
+        "air_distance": Parameter(
+            None, parameters.length, "Of the comparison without the slab, in the medium in front [m]."
+        )
+    },
     "beam_measures": _BEAM | {"window": Parameter(None, parameters.length, "Half-width of the window [m].")},
     "scattering": _FREQUENCY | {name: _axis(name) for name in LATERAL},
     "bloch": _FREQUENCY | {"kx_over_k0": _axis("kx_over_k0")},
@@ -112,14 +116,20 @@ def ask(description: Description, progress: Progress = False) -> xr.Dataset:
 
 def slab_of(description: Description) -> tuple[Slab, parameters.Design]:
     """The slab, and what defaults are taken by."""
-    table = description.get("slab", {})
-    slab = parameters.stack(table) if "stack" in table else parameters.slab(table)
-    if "tolerance" in description:
-        slab = _copy_of(slab, read(description["tolerance"], TOLERANCE, "tolerance"))
+    table, slab = description.get("slab", {}), structure_of(description)
     around = {key: value for key, value in table.items() if key != "stack"} | (
         {"layers": ""} if "stack" in table else {}
     )
     return slab, parameters.design(around, slab.before, arguments(description)["frequency"])
+
+
+def structure_of(description: Description) -> Slab:
+    """The slab, whatever is asked of it."""
+    table = description.get("slab", {})
+    slab = parameters.stack(table) if "stack" in table else parameters.slab(table)
+    if "tolerance" in description:
+        slab = _copy_of(slab, read(description["tolerance"], TOLERANCE, "tolerance"))
+    return slab
 
 
 def _copy_of(slab: Slab, values: Mapping[str, Any]) -> Slab:

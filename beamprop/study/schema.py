@@ -6,8 +6,8 @@ The models of pydantic are made of the tables that the command's options are mad
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import lru_cache
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from functools import lru_cache, partial
 from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, Tag, ValidationError, create_model
@@ -15,11 +15,13 @@ from pydantic_core import ErrorDetails
 
 from .. import parameters, validate
 from ..parameters import Parameter
-from .questions import LATERAL, OF_BEAMS, QUESTIONS, TOLERANCE, lateral_of, slab_of
+from .questions import LATERAL, OF_BEAMS, QUESTIONS, TOLERANCE, lateral_of, slab_of, structure_of
 
 #: Where answers go.
 OUTPUT: dict[str, Parameter] = {
-    "file": Parameter(None, parameters.text, "The dataset: .nc, .zarr, .mat, .vti, .vtr or .csv."),
+    "file": Parameter(
+        None, parameters.text, "The dataset: .nc (or .nc4, .netcdf, .h5), .zarr, .mat, .vti, .vtr or .csv."
+    ),
     "plot": Parameter(None, parameters.text, "A picture: .png, .svg or .pdf."),
     **parameters.PICTURE,
     "band": Parameter(
@@ -41,6 +43,7 @@ class Mistake(ValueError):
 
     def __init__(self, path: str, said: str) -> None:
         super().__init__(f"{path}: {said}")
+        self.path = path
 
 
 def _value(name: str, parameter: Parameter) -> Any:
@@ -117,21 +120,62 @@ def mistakes(document: Mapping[str, Any]) -> list[Mistake]:
     return wrong
 
 
-def together(document: Mapping[str, Any], wrong: Iterable[Mistake]) -> Iterator[Mistake]:
-    """What is wrong with the tables that have no mistake by themselves, when each is taken as a whole at the first point of the sweep."""
-    bad = {str(mistake).partition(":")[0].partition(".")[0] for mistake in wrong}
-    if not bad & {"question", "slab", "sweep", "tolerance"}:
-        make = (
-            (lambda: parameters.cell(document.get("slab", {})))
-            if document["question"]["name"] == "bloch"
-            else (lambda: slab_of(document))
-        )
-        yield from _refusals(make, "slab", document)
-    if not bad & {"question", "beam", "sweep"} and "beam" in document:
-        yield from _refusals(lambda: parameters.beam(document["beam"]), "beam", document)
-    if not bad & {"question", "sweep"} and document["question"]["name"] == "scattering":
+def together(document: Mapping[str, Any], wrong: Iterable[Mistake]) -> list[Mistake]:
+    """What is wrong with values of the right form, and with tables taken as a whole, at the first point of the sweep.
+
+    A table that has mistakes by itself is not taken as a whole; mistakes in one hide none in another.
+    """
+    paths = {mistake.path for mistake in wrong}
+    bad = {path.partition(".")[0] for path in paths}
+    if "sweep" in bad:
+        return []
+    found = list(_magnitudes(document, paths))
+    asked = not found and "question" not in bad
+    if not bad & {"slab", "tolerance"}:
+        found += _refusals(lambda: _structure(document, asked), "slab", document)
+    beam = document.get("beam")
+    if isinstance(beam, Mapping):
+        if "beam" not in bad:
+            found += _refusals(lambda: parameters.beam(beam), "beam", document)
+        if (
+            not paths & {"beam", "beam.z0"} and "z0" in beam
+        ):  # whatever the source is, and whatever else is wrong with it
+            found += _refusals(lambda: parameters.beam({"z0": beam["z0"]}), "beam", document)
+    if "question" not in bad and _name_of(document) == "scattering":
         given = dict.fromkeys(LATERAL) | document["question"]
-        yield from _refusals(lambda: lateral_of(given), "question", document)
+        found += _refusals(lambda: lateral_of(given), "question", document)
+    return list({mistake.path: mistake for mistake in reversed(found)}.values())[::-1]
+
+
+def _structure(document: Mapping[str, Any], asked: bool) -> Any:
+    """The slab of a document, with what its question adds to it where that has no mistake."""
+    if _name_of(document) == "bloch":
+        return parameters.cell(document.get("slab", {}))
+    return slab_of(document) if asked else structure_of(document)
+
+
+def _magnitudes(document: Mapping[str, Any], wrong: Collection[str]) -> Iterator[Mistake]:
+    """Numbers of the question that are none of its kind."""
+    name = _name_of(document)
+    own, asked = QUESTIONS.get(name, {}), document.get("question", {})
+    checks: dict[str, Callable[[Any, str], Any]] = {
+        "frequency": partial(validate.axis, positive=True),
+        "angle": partial(validate.angles, grazing=name == "scattering"),
+        "rtol": validate.rtol,
+    }
+
+    def look(key: str) -> None:
+        checks[key](own[key].parse(asked[key], key), key)
+
+    for key in checks:
+        if key in own and key in asked and f"question.{key}" not in wrong:
+            yield from _refusals(partial(look, key), "question", document)
+
+
+def _name_of(document: Mapping[str, Any]) -> str:
+    """The name of the question, as far as there is one."""
+    question = document.get("question")
+    return str(question.get("name")) if isinstance(question, Mapping) else ""
 
 
 def _refusals(make: Callable[[], Any], table: str, document: Mapping[str, Any]) -> Iterator[Mistake]:
@@ -149,7 +193,7 @@ def at(message: str, document: Mapping[str, Any], table: str = "question") -> Mi
     *outer, last = reversed(about.split(" of "))
     path = ".".join((*".".join(outer).split(), last)) if outer else last
     first = path.replace(",", ".").partition(".")[0]
-    own = QUESTIONS.get(str(document.get("question", {}).get("name")), {})
+    own = QUESTIONS.get(_name_of(document), {})
     homes = {"slab": {*parameters.SLAB, "stack"}, "beam": {*parameters.BEAM}, "question": {*own}, "output": {*OUTPUT}}
     home = table if first in homes.get(table, ()) else next((h for h, names in homes.items() if first in names), "")
     return Mistake(f"{home}.{path}" if home else path, said)
@@ -199,11 +243,10 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
     ValueError
         There is none.
     """
-    name = document["question"].get("name") if isinstance(document.get("question"), Mapping) else None
     tables = {
         "slab": parameters.SLAB,
         "beam": parameters.BEAM,
-        "question": QUESTIONS.get(str(name), {}),
+        "question": QUESTIONS.get(_name_of(document), {}),
         "tolerance": TOLERANCE,
     }
     kinds = {
@@ -214,9 +257,11 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
     }
     table, place = tables.get(path.partition(".")[0], {}), document.get(path.partition(".")[0], {})
     for part, following in zip(path.split(".")[1:], [*path.split(".")[2:], ""], strict=True):
-        place = _inside(place, part)
+        inside, place = place, _inside(place, part)
         if part in table and not following:
             return table[part]
+        if isinstance(inside, list) and place is not None and table is parameters.LAYER and not following:
+            return _LAYER
         if part in kinds and isinstance(place, Mapping | list):
             table = kinds[part]
         elif not part.isdigit() or not isinstance(place, Mapping):
@@ -225,6 +270,24 @@ def parameter_at(document: Mapping[str, Any], path: str) -> Parameter:
     near = difflib.get_close_matches(path, known, 1)
     hint = f"did you mean {near[0]}?" if near else "such as slab.eta or slab.layer.2.thickness"
     raise ValueError(f"expected the path of a value in the file, got {path!r}; {hint}")
+
+
+def _layer(value: Any, name: str) -> Any:
+    """The words of a layer, as they are; refused if they are none."""
+    parameters.layer(value, name)
+    return value
+
+
+#: A layer as a value of its own.
+_LAYER = Parameter(None, _layer, "A layer in words.")
+
+
+def value_at(document: Mapping[str, Any], path: str) -> Any:
+    """The value at a dotted path, or none."""
+    place: Any = document
+    for part in path.split("."):
+        place = _inside(place, part)
+    return place
 
 
 def _inside(place: Any, part: str) -> Any:
