@@ -159,13 +159,13 @@ def test_a_wrong_table_names_row_and_column(tmp_path, text, message):
 
 
 def test_what_is_no_table(tmp_path):
-    """Other objects, other encodings; a file that is not there is Python's own error."""
+    """Other objects, other encodings, a file that is not there."""
     with pytest.raises(ValueError, match=r"^table: expected the path of a file, got 3"):
         bp.Slab.from_table(3)
     (tmp_path / "binary.csv").write_bytes(b"thickness\xff\n1\n")
     with pytest.raises(ValueError, match=r"^table: expected text in UTF-8"):
         bp.Slab.from_table(tmp_path / "binary.csv")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileNotFoundError, match=r"^table: expected an existing file, got '.*none\.csv'"):
         bp.Slab.from_table(tmp_path / "none.csv")
 
 

@@ -249,8 +249,11 @@ def test_files_are_refused_by_what_they_lack(tmp_path):
         bp.SourcePlane.from_file(tmp_path / "d.nc")
     with pytest.raises(ValueError, match=r"^path: expected a file \.mat, \.npz, \.nc"):
         bp.SourcePlane.from_file("plane.txt")
-    with pytest.raises(FileNotFoundError):
-        bp.SourcePlane.from_file(tmp_path / "none.npz")
+    for kind, name in ((bp.SourcePlane, "none.npz"), (bp.Profile, "none.txt")):
+        with pytest.raises(FileNotFoundError, match=rf"^path: expected an existing file, got '.*{name}'") as missing:
+            kind.from_file(tmp_path / name)
+        assert missing.value.filename == str(tmp_path / name)
+        assert missing.value.strerror == "No such file or directory"
 
 
 @pytest.mark.parametrize(

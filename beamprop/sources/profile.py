@@ -145,7 +145,7 @@ class Profile(Tilted):
         >>> bp.Profile.from_file("measured.txt", z0=-0.01).x.size
         121
         """
-        path = validate.as_path(path)
+        path = validate.existing(validate.as_path(path))
         validate.flag(conjugate, "conjugate")
         table = read_columns(path, 2, 3, "x, Re p, Im p")
         p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
