@@ -54,7 +54,8 @@ def test_fields_and_widths_of_an_interface():
     np.testing.assert_allclose(bp.field(none, beam, F, x, z).p, bp.field(air, beam, F, x, z).p, atol=1e-9)
     assert float(bp.beam_width(none, beam, F).fwhm_out) == pytest.approx(float(bp.beam_width(none, beam, F).fwhm_in))
     assert bp.guided_modes(none, F).sizes["mode"] == 0
-    measures = bp.beam_measures(bp.Slab.interface(bp.AIR, STEEL), bp.GaussianBeam(0.096, z0=-0.05), F)
+    with pytest.warns(bp.HintWarning, match="steel is taken as a fluid"):  # it is meant
+        measures = bp.beam_measures(bp.Slab.interface(bp.AIR, STEEL), bp.GaussianBeam(0.096, z0=-0.05), F)
     assert float(measures.power.sum()) == pytest.approx(1, abs=1e-6)
 
 

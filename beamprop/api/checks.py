@@ -105,6 +105,7 @@ def unmoved_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: floa
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
     hints.warn_of_air(slab, f)
+    hints.warn_of_solids(slab, f)
     return Beams(f, angles, validate.rtol(rtol), beam, 0.0)
 
 
