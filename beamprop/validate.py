@@ -9,6 +9,7 @@ thin as one likes, for nothing is divided by its thickness.
 from __future__ import annotations
 
 import contextlib
+import errno
 import math
 import numbers
 import os
@@ -256,3 +257,21 @@ def as_path(value: Any, name: str = "path") -> Path:
         if isinstance(text, str) and text and "\0" not in text:
             return Path(text)
     raise refuse(name, "the path of a file", value)
+
+
+class MissingFile(FileNotFoundError):
+    """A file that is not there: with its errno and strerror, and said as every wrong argument is."""
+
+    argument = "path"
+
+    def __str__(self) -> str:
+        return f"{self.argument}: expected an existing file, got {self.filename!r}"
+
+
+def existing(path: Path, name: str = "path") -> Path:
+    """The path of a file that is there, or the `FileNotFoundError` that names the argument."""
+    if not path.exists():
+        error = MissingFile(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
+        error.argument = name
+        raise error
+    return path

@@ -94,8 +94,9 @@ def test_compare_is_of_any_magnitude(quiet, ours, theirs):
 def test_beams_that_only_huge_sums_would_find():
     """Refused with what they would take, plane waves or terms of sums, instead of summing for minutes."""
     said = r"^(slab: expected .* got one that takes \S+ \(\S+ plane waves at|rtol: .* needs more than \d+ plane waves .* has spread)"
-    with pytest.raises(ValueError, match=said):
+    with pytest.raises(ValueError, match=said) as refused:
         bp.beam_width(bp.Slab.uniform(bp.AIR, 1e6), bp.GaussianBeam(0.096, 20, z0=-0.1), 2500.0)
+    assert f"the slab {1e6 * 2500 / 343:.3g} thick (are all lengths in metres and the frequency" in str(refused.value)
 
 
 def test_positions_as_many_as_plane_waves_need(monkeypatch):

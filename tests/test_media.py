@@ -54,7 +54,8 @@ def test_fields_and_widths_of_an_interface():
     np.testing.assert_allclose(bp.field(none, beam, F, x, z).p, bp.field(air, beam, F, x, z).p, atol=1e-9)
     assert float(bp.beam_width(none, beam, F).fwhm_out) == pytest.approx(float(bp.beam_width(none, beam, F).fwhm_in))
     assert bp.guided_modes(none, F).sizes["mode"] == 0
-    measures = bp.beam_measures(bp.Slab.interface(bp.AIR, STEEL), bp.GaussianBeam(0.096, z0=-0.05), F)
+    with pytest.warns(bp.HintWarning, match="steel is taken as a fluid"):  # it is meant
+        measures = bp.beam_measures(bp.Slab.interface(bp.AIR, STEEL), bp.GaussianBeam(0.096, z0=-0.05), F)
     assert float(measures.power.sum()) == pytest.approx(1, abs=1e-6)
 
 
@@ -159,13 +160,13 @@ def test_a_wrong_table_names_row_and_column(tmp_path, text, message):
 
 
 def test_what_is_no_table(tmp_path):
-    """Other objects, other encodings; a file that is not there is Python's own error."""
+    """Other objects, other encodings, a file that is not there."""
     with pytest.raises(ValueError, match=r"^table: expected the path of a file, got 3"):
         bp.Slab.from_table(3)
     (tmp_path / "binary.csv").write_bytes(b"thickness\xff\n1\n")
     with pytest.raises(ValueError, match=r"^table: expected text in UTF-8"):
         bp.Slab.from_table(tmp_path / "binary.csv")
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(FileNotFoundError, match=r"^table: expected an existing file, got '.*none\.csv'"):
         bp.Slab.from_table(tmp_path / "none.csv")
 
 

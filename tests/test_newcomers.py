@@ -8,6 +8,7 @@ from command import good
 import beamprop as bp
 from beamprop import parameters
 from beamprop.cli import main
+from beamprop.study import files
 
 WATER = ["scattering", "--layer", "water 2mm", "--frequency", "1MHz", "--angle", "0"]
 
@@ -19,6 +20,44 @@ def test_half_spaces_left_at_air_around_water():
     for more in (["--background", "air"], ["--background", "water"], ["--density", "1.25"], ["--frequency", "1kHz"]):
         assert said not in good(*WATER, *more).stderr
     assert said not in good("scattering", "--layer", "steel 2mm", *WATER[3:]).stderr
+
+
+def test_a_metal_by_its_name_is_a_fluid_with_a_hint(tmp_path):
+    """In the command, in a study file and in Python; none at the normal, where nothing shears."""
+    said = "slab: steel is taken as a fluid, without shear waves; bp.Solid.from_material('steel') has them (--layer 'solid steel 5mm')"
+    off = ["--background", "water", "--frequency", "1MHz", "--angle", "30"]
+    assert f"warning: {said}" in good("scattering", "--layer", "steel 5mm", *off).stderr
+    (tmp_path / "s.toml").write_text(
+        '[question]\nname = "scattering"\nangle = [0, 30]\nfrequency = "1MHz"\n'
+        '[slab]\nbackground = "water"\nlayer = ["steel 5mm"]\n[sweep]\nslab.periods = [1]\n'
+    )
+    with pytest.warns(RuntimeWarning, match="HintWarning: slab: steel is taken as a fluid"):
+        files.read(tmp_path / "s.toml").answer(workers=1)
+    assert "taken as a fluid" not in good("scattering", "--layer", "steel 5mm", *off[:-1], "0").stderr
+    for layer in ("solid steel 5mm", "acrylic 5mm", "density=7850 speed=5000 5mm"):
+        assert "taken as a fluid" not in good("scattering", "--layer", layer, *off).stderr
+
+
+WATER_AROUND, STEEL = bp.material("water"), bp.material("steel")
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda slab: bp.scattering(slab, 1e6, angle=[0.0, 30.0]),
+        lambda slab: bp.field(slab, bp.GaussianBeam(0.02, z0=-0.01), 2e5, 0.0, 0.01),
+        lambda slab: bp.field(slab, bp.GaussianBeam((0.02, 0.02), z0=-0.01), 2e5, 0.0, 0.01, y=0.0),
+        lambda slab: bp.beam_width(slab, bp.GaussianBeam(0.02, z0=-0.01), 2e5),
+        lambda slab: bp.guided_modes(slab, 2e4, strip_over_k0=0.1),
+    ],
+    ids=["scattering", "field", "in space", "beam_width", "guided_modes"],
+)
+def test_every_question_hints_at_a_metal_that_stands_as_a_fluid(ask):
+    fluid = bp.material("steel", attenuation=2.0)  # with loss, too
+    for slab in (bp.Slab(bp.Layer(fluid, 2e-3), background=WATER_AROUND), bp.Slab.interface(WATER_AROUND, STEEL)):
+        with pytest.warns(bp.HintWarning, match="^slab: steel is taken as a fluid") as warned:
+            ask(slab)
+        assert warned[0].filename == __file__
 
 
 @pytest.mark.parametrize(

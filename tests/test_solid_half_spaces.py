@@ -210,3 +210,27 @@ def test_intensity_is_refused_in_solids():
         bp.field(LAYERED, BEAM, 1e6, 0.0, LAYERED.thickness + 1e-3, variables="intensity")
     water = bp.field(LAYERED, BEAM, 1e6, 0.0, [1e-3, 3e-3], variables="intensity")
     assert float(water.intensity_z.min()) != 0
+
+
+@pytest.mark.parametrize("y", [None, 0.0], ids=["2-D", "3-D"])
+@pytest.mark.parametrize("in_front", [[], [bp.Layer(bp.Fluid.from_speed(900.0, 1400.0), 2.1e-3)]], ids=["none", "oil"])
+def test_a_face_to_a_fluid_has_no_shear_stress(in_front, y):
+    """Exactly none, as on faces of plates, of an estimate that keeps rtol; behind the face s_xz is not small."""
+    slab = bp.Slab(in_front, before=WATER, after=STEEL) if in_front else bp.Slab.interface(WATER, STEEL)
+    beam = bp.GaussianBeam(0.006 if y is None else (0.006, 0.006), angle=30.39, z0=-0.005)
+    asked = {"variables": ["u_z", "s_xz"], "rtol": 1e-7, "y": y}
+    ds = bp.field(slab, beam, 1e6, [0.0, 0.004], [slab.thickness, slab.thickness + 1e-3], **asked)
+    assert not ds.s_xz[0].any()
+    assert abs(ds.s_xz[1]).min() > 0.01
+    alone = bp.field(slab, beam, 1e6, [0.0, 0.004], slab.thickness, **asked)
+    for estimate in (ds.error_estimate_s_xz, alone.error_estimate_s_xz):
+        assert float(estimate) < 1e-7
+
+
+def test_a_face_to_a_solid_in_contact_has_shear_stress():
+    """Continuous with that in front of it."""
+    slab = bp.Slab(bp.Layer(ALUMINIUM, 2e-3), before=WATER, after=STEEL)
+    z = slab.thickness + np.array([-1e-9, 0.0, 1e-9])
+    s_xz = bp.field(slab, bp.GaussianBeam(0.006, 20.0, z0=-0.005), 1e6, 0.001, z, variables="s_xz").s_xz.values
+    assert s_xz == pytest.approx(np.full(3, s_xz[1]), rel=1e-4)
+    assert abs(s_xz[1]) > 0.01

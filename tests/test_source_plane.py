@@ -3,6 +3,7 @@
 import h5py
 import numpy as np
 import pytest
+import scipy.interpolate
 import scipy.io
 import xarray as xr
 from accuracy_study.reference.medium import Medium
@@ -118,6 +119,64 @@ def test_a_disc_of_samples_is_a_soft_piston():
     assert np.max(errors(ds.p.values, piston.p.values)) < 1e-3
 
 
+WIDTH, GAP = 0.004, slice(33, 48)  # a spot, and where a scan lost its middle
+SCAN = 5e-4 * np.arange(-40, 41)
+KEPT = np.delete(SCAN, np.arange(81)[GAP])
+WATER = bp.Slab.uniform(bp.Fluid.from_speed(1000.0, 1500.0), 5e-3, background=bp.Fluid.from_speed(1000.0, 1500.0))
+
+
+def spot(x, y):
+    return np.exp(-(x**2 + np.asarray(y)[:, None] ** 2) / WIDTH**2)
+
+
+def guessed():
+    """|S| at pi over the gap's 8 mm over that at 0, of the spline through what is left of the spot along one axis."""
+    fine = np.linspace(SCAN[0], SCAN[-1], 4001)
+    p = scipy.interpolate.CubicSpline(KEPT, np.exp(-((KEPT / WIDTH) ** 2)))(fine)
+    return abs(np.sum(p * np.exp(-1j * np.pi / 0.008 * fine))) / np.sum(p)
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_a_gap_is_warned_of_by_the_nyquist_wavenumber_of_the_largest_step(axis):
+    x, y = (KEPT, SCAN) if axis == "x" else (SCAN, KEPT)
+    holed = bp.SourcePlane(x, y, spot(x, y), -0.02)
+    for source in (holed, holed + bp.GaussianBeam((0.01, 0.01), z0=-0.02)):
+        with pytest.warns(
+            bp.AccuracyWarning, match=rf"step of {axis} \(0.008 m, behind -0.004 m\): .* a guess"
+        ) as warned:
+            bp.field(WATER, source, 2e5, 0.0, 0.02, y=0.0, rtol=1e-3)
+        share = float(str(warned[0].message).split("got ")[1].split(" beyond")[0])
+        assert share == pytest.approx(guessed(), rel=0.1)
+    whole = bp.SourcePlane(SCAN, SCAN, spot(SCAN, SCAN), -0.02)
+    with pytest.warns(bp.AccuracyWarning):  # and the answer is indeed wrong
+        p = bp.field(WATER, holed, 2e5, 0.0, 0.02, y=0.0, rtol=1e-3).p
+    assert abs(p / bp.field(WATER, whole, 2e5, 0.0, 0.02, y=0.0, rtol=1e-3).p - 1) > 0.1
+
+
+def test_a_gap_in_a_profile_is_warned_of():
+    plate = bp.Slab.uniform(bp.Fluid.from_speed(1900.0, 2800.0), 5e-3, background=WATER.before)
+    holed = bp.Profile(KEPT, np.exp(-((KEPT / WIDTH) ** 2)), -0.02)
+    for source in (holed, holed + bp.GaussianBeam(0.01, z0=-0.02)):
+        for asked in (
+            lambda beam: bp.field(plate, beam, 2e5, 0.0, 0.02, rtol=1e-3),
+            lambda beam: bp.beam_width(plate, beam, 2e5, rtol=1e-3),
+            lambda beam: bp.beam_measures(plate, beam, 2e5, rtol=1e-3, window=0.1),
+        ):
+            with pytest.warns(bp.AccuracyWarning, match=r"step of x \(0.008 m, behind -0.004 m\)") as warned:
+                asked(source)
+            share = float(str(warned[0].message).split("got ")[1].split(" beyond")[0])
+            assert share == pytest.approx(guessed(), rel=0.1)
+
+
+def test_uneven_steps_that_sample_a_spot_well_are_not_warned_of():
+    """Whose spectrum has ended at the Nyquist wavenumber of the largest step, 0.5 mm; and steps that are even to printed digits."""
+    uneven = 0.012 * np.sinh(np.linspace(-1, 1, 61)) / np.sinh(1)
+    printed = np.round(np.linspace(-0.012, 0.012, 56), 6)
+    for x in (uneven, printed):
+        bp.field(WATER, bp.SourcePlane(x, x, spot(x, x), -0.02), 2e5, 0.0, 0.02, y=0.0, rtol=1e-3)
+        bp.field(WATER, bp.Profile(x, np.exp(-((x / WIDTH) ** 2)), -0.02), 2e5, 0.0, 0.02, rtol=1e-3)
+
+
 # --- records and files ------------------------------------------------------------------------------------
 
 
@@ -190,8 +249,11 @@ def test_files_are_refused_by_what_they_lack(tmp_path):
         bp.SourcePlane.from_file(tmp_path / "d.nc")
     with pytest.raises(ValueError, match=r"^path: expected a file \.mat, \.npz, \.nc"):
         bp.SourcePlane.from_file("plane.txt")
-    with pytest.raises(FileNotFoundError):
-        bp.SourcePlane.from_file(tmp_path / "none.npz")
+    for kind, name in ((bp.SourcePlane, "none.npz"), (bp.Profile, "none.txt")):
+        with pytest.raises(FileNotFoundError, match=rf"^path: expected an existing file, got '.*{name}'") as missing:
+            kind.from_file(tmp_path / name)
+        assert missing.value.filename == str(tmp_path / name)
+        assert missing.value.strerror == "No such file or directory"
 
 
 @pytest.mark.parametrize(

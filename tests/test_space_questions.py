@@ -137,3 +137,29 @@ def test_too_many_plane_waves_are_refused(beam):
         ValueError, match=r"^rtol: 1e-08 needs too many plane waves in three dimensions.*z a little behind z0"
     ):
         bp.field(SLAB, beam, 2500.0, [-40.0, 40.0], 0.0, y=0.0)
+
+
+WATER = bp.Fluid.from_speed(1000.0, 1500.0)
+PLATE = bp.Slab(bp.Layer(bp.Solid(7900.0, 5900.0, 3200.0), 5e-3), background=WATER)
+
+
+@pytest.mark.parametrize(
+    ("beam", "frequency", "x", "z", "said"),
+    [
+        (bp.Piston(0.0125, z0=-0.03), 1.0, 0.0, 0.02, "of 1.5e+03 m in front the source is 1.67e-05 wide"),
+        (bp.Piston(12.5, z0=-30.0), 1e6, 0.0, 0.02, "of 0.0015 m in front the source is 1.67e+04 wide"),
+        (bp.Piston(0.0125, z0=-0.03), 1e6, [-20.0, 20.0], 0.02, "the source is 16.7 wide, the farthest position 1.33e"),
+    ],
+    ids=["megahertz", "source in mm", "x in mm"],
+)
+def test_refusals_name_sizes_that_wrong_units_make(beam, frequency, x, z, said):
+    with pytest.raises(ValueError, match=r"^rtol: 1e-08 needs too many plane waves in three dimensions") as refused:
+        bp.field(PLATE, beam, frequency, x=x, z=z, y=0.0)
+    assert said in str(refused.value)
+    assert str(refused.value).endswith(" thick (are all lengths in metres and the frequency in hertz?)")
+
+
+def test_refusals_of_usual_sizes_ask_for_no_units():
+    """A piston's edge next to its plane, and positions 300 wavelengths away."""
+    with pytest.raises(ValueError, match=r"the slab 0\.75 thick$"):
+        bp.field(SLAB, bp.Piston(0.1, z0=-1e-4), 2500.0, [-40.0, 40.0], 0.0, y=0.0)

@@ -144,3 +144,12 @@ def test_what_is_no_source_is_no_sum():
         BEAM + 3
     with pytest.raises(TypeError):
         BEAM * "2"
+    with pytest.raises(TypeError):
+        1 + BEAM
+
+
+def test_pythons_sum_is_a_sum():
+    assert sum([BEAM, 2j * PROFILE, SLITS]) == BEAM + 2j * PROFILE + SLITS
+    assert sum([BEAM]) is BEAM
+    array = bp.Array([[0.0, 0.0], [0.02, 0.0]], UNLIKE[0][1])
+    assert sum([array, UNLIKE[3][1]]) == array + UNLIKE[3][1]

@@ -274,6 +274,7 @@ def test_the_loss_that_a_refusal_names_does(monkeypatch):
     with pytest.raises(ValueError, match="slab: it guides more backward waves") as refused:
         bp.field(slab, *question, rtol=1e-6)
     assert len({loss for loss in losses if loss in misplaced.REMEDIES}) <= 4
+    assert f"away, the slab {50.03 * K0 / (2 * np.pi):.3g} thick" in str(refused.value)
     loss = float(re.search(r"loss of (\S+) would do", str(refused.value))[1])
     ds = bp.field(with_loss(slab, loss), *question, rtol=1e-6)
     assert float(ds.error_estimate) < 1e-6

@@ -113,6 +113,7 @@ def beam_measures(
         return measures_in_space(space_beams(slab, beam, frequency, angle, rtol, azimuth), half, progress)
     beams = checks.beams(slab, beam, frequency, angle, rtol)
     flat, angles = beams.flat
+    checks.warn_if_not_ended(beam, slab, flat, -beam.z0, beams.rtol)
     memory.check_table(flat.size * angles.size, 280.0)
     table = {name: np.full((flat.size, angles.size, 2), np.nan) for name in measures.Beamlet._fields}
     worst, worst_power = uniform_budget(1, 0.0), PowerError()

@@ -91,6 +91,7 @@ def beam_width(
         return widths_in_space(space_beams(slab, beam, frequency, angle, rtol, azimuth), air_distance, progress)
     beams = checks.beams(slab, beam, frequency, angle, rtol)
     flat, angles = beams.flat
+    checks.warn_if_not_ended(beam, slab, flat, -beam.z0, beams.rtol)
     hints.warn_of_width_beside(slab, beam, flat)
     memory.check_table(flat.size * angles.size, 60.0)
     table, most, worst = _table(slab, beams, air_distance, progress)

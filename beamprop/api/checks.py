@@ -43,17 +43,21 @@ def warn_if_inaccurate(error: ErrorBudget | PowerError, rtol: float, of: str = "
         )
 
 
-def warn_if_not_ended(beam: Any, k0: float, way: float, rtol: float) -> None:
+def warn_if_not_ended(beam: Any, slab: Slab, frequency: np.ndarray, way: float, rtol: float) -> None:
     """Warn, with the numbers, of samples of a source that stop above rtol; `way` [m] is that to the nearest plane in front of the slab."""
-    not_ended = getattr(beam, "not_ended", None)
-    shares = {} if not_ended is None else {at: share for at, share in not_ended(k0, way).items() if share > rtol}
-    if shares:
-        warnings.warn(
-            f"p: expected samples that end to rtol {rtol:.1e} of their largest, got {', '.join(f'{s:.1e} {at}' for at, s in shares.items())}: "
-            "what lies beyond is left out",
-            AccuracyWarning,
-            stacklevel=3,
-        )
+    for source in getattr(beam, "sources", (beam,)):
+        not_ended = getattr(source, "not_ended", None)
+        if not_ended is None:
+            continue
+        shares = {at: share for at, share in not_ended(np.max(k0(slab, frequency)), way).items() if share > rtol}
+        if shares:
+            guessed = any("largest step" in at for at in shares)
+            warnings.warn(
+                f"p: expected samples that end to rtol {rtol:.1e} of their largest, got {', '.join(f'{s:.1e} {at}' for at, s in shares.items())}: "
+                f"what lies beyond is left out{', or a guess by splines where steps are uneven' if guessed else ''}",
+                AccuracyWarning,
+                stacklevel=3,
+            )
 
 
 class Beams(NamedTuple):
@@ -101,6 +105,7 @@ def unmoved_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: floa
     f = validate.axis(frequency, "frequency", positive=True)
     angles = validate.angles(beam.angle if angle is None else angle)
     hints.warn_of_air(slab, f)
+    hints.warn_of_solids(slab, f)
     return Beams(f, angles, validate.rtol(rtol), beam, 0.0)
 
 

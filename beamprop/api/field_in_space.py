@@ -81,9 +81,7 @@ def question_in_space(
     refuse_directions(slab, np.atleast_1d(beams.frequency))
     hints.warn_of_width(slab, beam, beams.frequency, x)
     frequencies, angles = beams.flat
-    checks.warn_if_not_ended(
-        beam, np.max(checks.k0(slab, frequencies)), min(float(np.min(z)), 0.0) - beam.z0, beams.rtol
-    )
+    checks.warn_if_not_ended(beam, slab, frequencies, min(float(np.min(z)), 0.0) - beam.z0, beams.rtol)
     flat_z, flat_y, flat_x = np.atleast_1d(z), np.atleast_1d(y) - source_beam.y0, np.atleast_1d(x) - source_beam.x0
     question = SpaceQuestion(
         slab, source_beam.in_space(azimuth), frequencies, angles, flat_z, flat_y, flat_x, beams.rtol

@@ -63,6 +63,7 @@ def checked_question(
     zs = checks.from_launch_plane(zs, beam)
     hints.warn_of_width(slab, beam, beams.frequency, xs)
     frequencies, angles = beams.flat
+    checks.warn_if_not_ended(beam, slab, frequencies, min(float(np.min(zs)), 0.0) - beam.z0, beams.rtol)
     if average is not None:
         validate.word(average, "average", "cell")
     else:

@@ -14,7 +14,7 @@ from ..media.structures import Slab
 from ..modes import argument_principle, guided
 from ..modes.branches import branches
 from ..response.sampled_slab import SampledSlab, sample
-from . import checks
+from . import checks, hints
 
 
 def guided_modes(
@@ -69,6 +69,7 @@ def guided_modes(
     """
     validate.instance(slab, Slab, "slab")
     f = validate.axis(frequency, "frequency", positive=True)
+    hints.warn_of_solids(slab, f)
     highest = validate.as_number(kx_over_k0_max, "kx_over_k0_max", positive=True)
     strip = validate.as_number(strip_over_k0, "strip_over_k0", positive=True)
     flat = np.atleast_1d(f)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..media.fluids import Fluid
 from ..media.hints import hint
+from ..media.materials import TABLE
 from ..media.solids import Solid
 from ..media.structures import UNSTATED, Layer, Slab
 from ..sources.base import Beam
@@ -14,6 +17,31 @@ from ..sources.base import Beam
 ULTRASOUND = 20e3
 #: Density [kg/m3] and sound speed [m/s] of water and what is like it.
 WATER_LIKE = ((850.0, 1200.0), (1300.0, 1700.0))
+
+#: Shear waves faster than sound in water are met by waves in it at real angles, and guide waves in plates that those excite: of metals and
+#: glasses the shear carries all that passes beyond the critical angle, where that of plastics is a correction [m/s].
+FAST_SHEAR = 1500.0
+#: The solids with such waves: density, longitudinal speed and name.
+SOLIDS = [
+    (float(m.density), float(m.sound_speed), name) for name, m in TABLE.items() if (m.shear_speed or 0) > FAST_SHEAR
+]
+DENSITIES = frozenset(density for density, _, _ in SOLIDS)
+
+
+def warn_of_solids(slab: Slab, frequency: np.ndarray) -> None:
+    """A hint that a metal or glass of the table stands as a fluid, without its shear waves."""
+    layers: Any = (layer for cell, _ in slab.segments for layer in cell.layers if isinstance(layer, Layer))
+    for fluid in (slab.before, slab.after, *(layer.fluid for layer in layers)):
+        if isinstance(fluid, Fluid) and not callable(fluid.density) and fluid.density in DENSITIES:
+            speed = 2 * np.pi * np.max(frequency) / abs(complex(fluid.wavenumber(np.max(frequency))).real)
+            alike = [n for rho, c, n in SOLIDS if fluid.density == rho and abs(c - speed) <= 1e-6 * c]
+            if alike:
+                name = alike[-1]  # iron's numbers are steel's, which is meant more often
+                hint(
+                    f"slab: {name} is taken as a fluid, without shear waves; "
+                    f"bp.Solid.from_material({name!r}) has them (--layer 'solid {name} 5mm')"
+                )
+                return
 
 
 def warn_of_air(slab: Slab, frequency: np.ndarray) -> None:

@@ -80,6 +80,8 @@ def scattering(
     name, value = checks.single_option(kx=kx, kx_over_k0=kx_over_k0, angle=angle)
     flat = np.atleast_1d(f)
     axis, k = checks.lateral(name, value, lambda g: checks.k0(slab, g), flat, 100.0)
+    if np.any(k):  # at the normal nothing shears
+        hints.warn_of_solids(slab, f)
     in_solid = IN_SOLID if isinstance(slab.after, Solid) else ()
     names = ("r", "t", *in_solid, *WAVES, *(ERRORS if estimate else ()))
     variables = {n: np.empty(k.shape, complex if n in ("r", "t", *IN_SOLID) else float) for n in names}

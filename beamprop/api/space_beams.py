@@ -82,8 +82,7 @@ def space_beams(slab: Slab, beam: Beam, frequency: Any, angle: Any, rtol: float,
     if source.z0 == 0 and has_edge(about_origin):
         raise validate.refuse("beam", "a sharp edge in front of the near face, whose z is 0", beam)
     refuse_directions(slab, beams.flat[0])
-    for single in each:
-        checks.warn_if_not_ended(single, np.max(checks.k0(slab, beams.flat[0])), -beam.z0, beams.rtol)
+    checks.warn_if_not_ended(beam, slab, beams.flat[0], -beam.z0, beams.rtol)
     return SpaceBeams(slab, beam, beams, about_origin.azimuth if given is None else given, middle_of(beam), given)
 
 

@@ -106,6 +106,7 @@ def _alike(slabs: Sequence[Slab], beams: Sequence[Beam], f: np.ndarray) -> Itera
     for i, (slab, beam) in enumerate(zip(slabs, beams, strict=True)):
         validate.instance(slab, Slab, "slabs")
         hints.warn_of_air(slab, f[i])
+        hints.warn_of_solids(slab, f[i])
         same = upright(beam) if isinstance(beam, Hashable) else id(beam)
         groups.setdefault((same, layout(slab)), []).append(i)
     for points in groups.values():

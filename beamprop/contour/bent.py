@@ -162,7 +162,7 @@ def _without_any(search: Search, planned: Planned) -> Quadrature:
         return in_stretches.quadrature_in_stretches(search, crowded=True)
     if planned.unclear:
         raise ValueError(refusal(search))
-    raise ValueError(too_many(search.rtol) if search.checks.places.on_a_line else too_many_in_space(search.rtol))
+    raise ValueError(too_many(search) if search.checks.places.on_a_line else too_many_in_space(search))
 
 
 def _quadrature(planned: Planned, compared: Compared) -> Quadrature:

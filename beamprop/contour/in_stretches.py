@@ -29,7 +29,7 @@ def quadrature_in_stretches(search: Search, crowded: bool) -> Quadrature:
     """
     best, unclear = best_in_stretches(search, crowded)
     if best is None:
-        raise ValueError(refusal(search) if unclear else too_many(search.rtol))
+        raise ValueError(refusal(search) if unclear else too_many(search))
     if crowded and best.worst > 1:  # not a digit is right
         raise ValueError(refusal(search))
     return best

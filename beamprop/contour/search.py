@@ -27,6 +27,8 @@ MOST_CUT = 8
 MANY_PLANE_WAVES = 200
 #: Tolerance over rtol with which the ends of spectra and bands are determined: none of these shows in an error of rtol.
 BELOW_RTOL = 1e-3
+#: Wavelengths above which, or below one over it, a size is likely in another unit: millimetres and megahertz for metres and hertz are 1e3 and 1e6 off.
+ODD_SIZE = 1e3
 
 
 class Search(NamedTuple):
@@ -134,21 +136,39 @@ def refusal(search: Search) -> str:
             "in every layer and half-space"
         )
     )
-    return f"slab: it guides more backward waves than can be told from the forward ones; add loss{remedy}"
-
-
-def too_many(rtol: float) -> str:
-    """The message of a refusal where a contour would take too many plane waves."""
     return (
-        f"rtol: {rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
-        "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
-        "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
+        f"slab: it guides more backward waves than can be told from the forward ones; add loss{remedy}{sizes(search)}"
     )
 
 
-def too_many_in_space(rtol: float) -> str:
+def sizes(search: Search) -> str:
+    """The sizes in a question, in wavelengths, for the end of a refusal; those of wrong units are far from what a wave of them does."""
+    wavelength = 2 * math.pi / search.slab.k0
+    source, across = 2 * search.extent.source / wavelength, search.checks.places.across
+    farthest, slab = math.hypot(across, search.extent.path) / wavelength, search.slab.thickness / wavelength
+    given = [v for v in (source, farthest, slab) if v > 0]
+    odd = any(v > ODD_SIZE or v < 1 / ODD_SIZE for v in given)
+    thick = f", the slab {slab:.3g} thick" if slab > 0 else ""
+    return (
+        f"; in wavelengths of {wavelength:.3g} m in front the source is {source:.3g} wide, the farthest position {farthest:.3g} away{thick}"
+        f"{' (are all lengths in metres and the frequency in hertz?)' if odd else ''}"
+    )
+
+
+def too_many(search: Search) -> str:
+    """The message of a refusal where a contour would take too many plane waves."""
+    return (
+        f"rtol: {search.rtol:g} needs more than {MOST_PLANE_WAVES} plane waves for this source and window (the spectrum of a sharp "
+        "edge does not end on its own launch plane: ask for z a little behind z0; and a beam that has spread over very many "
+        "wavelengths takes as many plane waves: ask for a shorter way or a higher rtol)"
+        f"{sizes(search)}"
+    )
+
+
+def too_many_in_space(search: Search) -> str:
     """The same in three dimensions, where the lattice of (kx, ky) has an end too."""
     return (
-        f"rtol: {rtol:g} needs too many plane waves in three dimensions for this beam and these positions: ask for positions nearer to the "
+        f"rtol: {search.rtol:g} needs too many plane waves in three dimensions for this beam and these positions: ask for positions nearer to the "
         "beam, for z a little behind z0 where the beam is narrow or its edge sharp, for a shorter way, or a higher rtol"
+        f"{sizes(search)}"
     )

@@ -70,7 +70,7 @@ def _from_frame(frame: Any) -> tuple[list[str], list[list[Any]]]:
 
 def _from_file(path: Any) -> tuple[list[str], list[list[Any]]]:
     """Header and rows of a CSV file: commas, semicolons or tabs; empty lines and those that begin with # are left out."""
-    with open(validate.as_path(path, "table"), encoding="utf-8-sig", newline="") as file:
+    with open(validate.existing(validate.as_path(path, "table"), "table"), encoding="utf-8-sig", newline="") as file:
         try:
             lines = [line for line in file if line.strip() and not line.lstrip().startswith("#")]
         except UnicodeDecodeError as error:

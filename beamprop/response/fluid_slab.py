@@ -91,6 +91,11 @@ class FluidSlab(NamedTuple):
         return isinstance(self.after, SolidHalfSpace) or any(segment.layers.solids for segment in self.segments)
 
     @property
+    def far_face_shears(self) -> bool:
+        """Whether solids touch at the far face."""
+        return isinstance(self.after, SolidHalfSpace) and bool(self.after.run)
+
+    @property
     def lossless_outside(self) -> tuple[bool, bool]:
         """Whether a wave along the normal has no loss in front, and behind."""
         sides = []

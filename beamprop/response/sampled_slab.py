@@ -80,6 +80,10 @@ class SampledSlab(Protocol):
         """Whether shear stress acts in some layer or half-space: power then has a part beside p v_z."""
 
     @property
+    def far_face_shears(self) -> bool:
+        """Whether shear stress may act on the far face: solids touch there."""
+
+    @property
     def lossless_outside(self) -> tuple[bool, bool]:
         """Whether a wave along the normal has no loss in front, and behind."""
 

@@ -156,6 +156,10 @@ def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, qu
             out[inside] = response.inside[0] * launch
         if behind.any():
             out[behind] = _behind(s, kx, response, np.maximum(z[behind] - s.thickness, 0.0), quantity) * launch
+        if (
+            quantity == "s_xz" and not s.far_face_shears
+        ):  # no more than the rounding of its P and its S wave, which cancel there
+            out[np.abs(z - s.thickness) <= AT_INTERFACE * s.thickness] = 0
     return out
 
 

@@ -96,6 +96,10 @@ class Summable:
         """The sum of two sources: a `SourceSum`."""
         return _sum((self, 1.0), (source, 1.0)) if isinstance(source, Summable) else NotImplemented
 
+    def __radd__(self, nothing: Any) -> Any:
+        """0 + a source, with which Python's `sum` begins: the source."""
+        return self if type(nothing) is int and nothing == 0 else NotImplemented
+
     def __sub__(self, source: Any) -> Any:
         """The difference of two sources."""
         return _sum((self, 1.0), (source, -1.0)) if isinstance(source, Summable) else NotImplemented

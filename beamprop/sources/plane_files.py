@@ -22,7 +22,7 @@ def read_plane(path: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     reader = readers.get(path.suffix.lower())
     if reader is None:
         raise validate.refuse("path", f"a file {', '.join(readers)}", str(path))
-    with open(path, "rb"):  # a file that cannot be opened is an OSError, whatever the format
+    with open(validate.existing(path), "rb"):  # a file that cannot be opened is an OSError, whatever the format
         pass
     try:
         arrays = reader(path)

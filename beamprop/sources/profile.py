@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,11 +17,24 @@ from .columns import read_columns
 EVEN = 1e-6
 
 
-def on_even_positions(x: np.ndarray, p: np.ndarray, axis: int, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Samples along an axis as they are, or on even positions of the finest spacing by a cubic spline."""
+class LargestStep(NamedTuple):
+    """The largest step of uneven samples [m], and the position behind which it lies."""
+
+    size: float
+    behind: float
+
+    def said(self, name: str) -> str:
+        """In words, of the axis `name`."""
+        return f"beyond the Nyquist wavenumber of the largest step of {name} ({self.size:.3g} m, behind {self.behind:.3g} m)"
+
+
+def on_even_positions(
+    x: np.ndarray, p: np.ndarray, axis: int, name: str
+) -> tuple[np.ndarray, np.ndarray, LargestStep | None]:
+    """Samples along an axis as they are, or on even positions of the finest spacing by a cubic spline, with the largest step then."""
     steps = np.diff(x)
     if np.ptp(steps) <= EVEN * steps.min():
-        return x, p
+        return x, p, None
     from scipy.interpolate import CubicSpline
 
     count = float((x[-1] - x[0]) / steps.min()) + 1
@@ -29,8 +42,23 @@ def on_even_positions(x: np.ndarray, p: np.ndarray, axis: int, name: str) -> tup
     memory.check(
         name, 200.0 * count * beside, f"{count:.3g} even steps as small as the least", f"space {name} more evenly"
     )
-    even = np.linspace(x[0], x[-1], round(count))
-    return even, CubicSpline(x, p, axis=axis)(even)
+    even, widest = np.linspace(x[0], x[-1], round(count)), int(np.argmax(steps))
+    return even, CubicSpline(x, p, axis=axis)(even), LargestStep(float(steps[widest]), float(x[widest]))
+
+
+def beyond_largest_step(
+    step: LargestStep, k: np.ndarray, size: np.ndarray, k0: float, way: float, largest: float
+) -> float:
+    """The largest of spectrum sizes at wavenumbers k, (n,) each, beyond the Nyquist wavenumber of a step, over `largest`.
+
+    There a spline through uneven samples has guessed. Evanescent waves have decayed on a `way` [m] through the medium in front.
+    """
+    nyquist = math.pi / step.size
+    beyond = size[
+        np.abs(k) >= nyquist - abs(k[1])
+    ]  # k by even steps: the neighbour below shows what is at the number itself
+    decay = math.exp(-math.sqrt(max(nyquist**2 - k0**2, 0.0)) * way)
+    return float(beyond.max(initial=0.0)) / largest * decay
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +68,8 @@ class Profile(Tilted):
     Parameters
     ----------
     x : 1-D array, m
-        Strictly increasing. Uneven samples are brought onto an even grid of the finest spacing by a cubic spline.
+        Strictly increasing. Uneven samples are brought onto an even grid of the finest spacing by a cubic spline; questions warn where the
+        spectrum has not ended, to rtol, at the Nyquist wavenumber of the largest step.
     p : 1-D array of complex, Pa
     z0 : float, m
         Launch plane, z0 <= 0.
@@ -64,6 +93,8 @@ class Profile(Tilted):
     p: np.ndarray
     z0: float = 0.0
     angle: float = 0.0
+    # of the samples as they were given, if uneven; not annotated: no field, so that changed samples, even by now, have none
+    _largest_step = None
 
     def __post_init__(self) -> None:
         self._check_launch()
@@ -77,7 +108,8 @@ class Profile(Tilted):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
             raise ValueError("p: expected a profile that is not zero everywhere, got zeros")
-        x, p = on_even_positions(x, p, 0, "x")
+        x, p, largest_step = on_even_positions(x, p, 0, "x")
+        object.__setattr__(self, "_largest_step", largest_step)
         for key, array in (("x", x), ("p", p)):
             array.setflags(write=False)
             object.__setattr__(self, key, array)
@@ -113,7 +145,7 @@ class Profile(Tilted):
         >>> bp.Profile.from_file("measured.txt", z0=-0.01).x.size
         121
         """
-        path = validate.as_path(path)
+        path = validate.existing(validate.as_path(path))
         validate.flag(conjugate, "conjugate")
         table = read_columns(path, 2, 3, "x, Re p, Im p")
         p = table[:, 1] + (1j * table[:, 2] if table.shape[1] == 3 else 0)
@@ -136,7 +168,7 @@ class Profile(Tilted):
         Raises
         ------
         ValueError
-            It has other dimensions, or its x are not even.
+            It has other dimensions.
 
         Examples
         --------
@@ -215,6 +247,15 @@ class Profile(Tilted):
         """Whether the samples' spectrum has vanished where it ends, at the Nyquist wavenumber."""
         lo, hi = self.band(0.0, tolerance)
         return (hi - lo) / 2 < (1 - 1e-9) * np.pi / self.spacing
+
+    def not_ended(self, k0: float, way: float) -> dict[str, float]:
+        """Of uneven samples |S| beyond the Nyquist wavenumber of their largest step, over the largest; see `SourcePlane.not_ended`."""
+        step: LargestStep | None = self._largest_step
+        if step is None:
+            return {}
+        size = np.abs(np.fft.fft(self.p, 4 * self.x.size))
+        k = 2 * np.pi * np.fft.fftfreq(size.size, self.spacing)
+        return {step.said("x"): beyond_largest_step(step, k, size, k0, way, float(size.max()))}
 
     def spectrum_ends(self, k0: float) -> tuple[float, float]:
         """The interval of kx at whose ends the spectrum is cut off, whatever its value there [rad/m]."""

@@ -14,7 +14,7 @@ from .. import memory, validate
 from .base import BLOCK, Tilted, spectral_sum
 from .in_space import unit_vector
 from .plane_files import read_plane
-from .profile import on_even_positions
+from .profile import LargestStep, beyond_largest_step, on_even_positions
 
 #: The plane is padded to so many times its samples, where the extent of its spectrum is read off: |S| between two wavenumbers is at most 1.3
 #: times the larger of both then.
@@ -28,7 +28,7 @@ class SourcePlane(Tilted):
     Parameters
     ----------
     x, y : 1-D arrays, m
-        Strictly increasing. Uneven samples are brought onto even ones of the finest spacing by cubic splines.
+        Strictly increasing. Uneven samples are brought onto even ones of the finest spacing by cubic splines, which guess what lies in a gap.
     p : array of complex (y, x), Pa
         exp(-i w t).
     z0 : float, m
@@ -40,7 +40,7 @@ class SourcePlane(Tilted):
     -----
     Between the samples the pressure is their band-limited interpolation: the spectrum is ``dx dy sum p exp(-i kx x - i ky y)`` up to the
     Nyquist wavenumbers pi/dx and pi/dy, and 0 beyond. Space around the samples is open. `field` warns, with the number, where samples have not
-    ended at their rim, or their spectrum at the Nyquist wavenumber, to the requested rtol.
+    ended at their rim, or their spectrum at the Nyquist wavenumber, of uneven samples that of their largest step, to the requested rtol.
 
     Examples
     --------
@@ -60,6 +60,8 @@ class SourcePlane(Tilted):
     azimuth: float = field(default=0.0, kw_only=True)
     in_space_only = True
     file = ""  # the name of the one it was read from, for the record; changed samples are no longer its
+    # of the samples as they were given, where uneven; like `file` no field
+    _largest_steps = (None, None)
 
     def __post_init__(self) -> None:
         self._check_launch()
@@ -76,8 +78,9 @@ class SourcePlane(Tilted):
             raise ValueError("p: expected finite values, got NaN or infinity")
         if not np.any(p):
             raise ValueError("p: expected a plane that is not zero everywhere, got zeros")
-        x, p = on_even_positions(x, p, 1, "x")
-        y, p = on_even_positions(y, p, 0, "y")
+        x, p, step_x = on_even_positions(x, p, 1, "x")
+        y, p, step_y = on_even_positions(y, p, 0, "y")
+        object.__setattr__(self, "_largest_steps", (step_x, step_y))
         for key, array in (("x", x), ("y", y), ("p", p)):
             array.setflags(write=False)
             object.__setattr__(self, key, array)
@@ -310,4 +313,14 @@ class SourcePlane(Tilted):
         rim = max(float(v.max()) for v in (size[0], size[-1], size[:, 0], size[:, -1])) / float(size.max())
         nyquist = math.pi / max(self._spacings)
         decay = math.exp(-math.sqrt(max(nyquist**2 - k0**2, 0.0)) * way)
-        return {"at the rim": rim, "at the Nyquist wavenumber": self._at_nyquist * decay}
+        return {"at the rim": rim, "at the Nyquist wavenumber": self._at_nyquist * decay} | self._guessed(k0, way)
+
+    def _guessed(self, k0: float, way: float) -> dict[str, float]:
+        """|S| beyond the Nyquist wavenumbers of the largest steps of uneven samples."""
+        (*both, size), shares = self._padded, {}
+        steps: tuple[LargestStep | None, ...] = self._largest_steps
+        for name, step, k, axis in zip("xy", steps, both, (0, 1), strict=True):
+            if step is not None:
+                along = size.max(axis=axis)
+                shares[step.said(name)] = beyond_largest_step(step, k, along, k0, way, float(size.max()))
+        return shares
