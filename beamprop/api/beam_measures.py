@@ -90,7 +90,8 @@ def beam_measures(
     -----
     RuntimeWarning
         A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice; |p|
-        does not fall to a hundredth in the widest window that is tried, and none was given.
+        does not fall to a hundredth in the widest window that is tried, and none was given; the peak is a ring, in three dimensions, and cuts
+        pass through its place farthest along x.
     AccuracyWarning
         The estimated error of a beam's |p|, over the largest, or of its power, over that power, is above rtol.
 

@@ -70,7 +70,8 @@ def beam_width(
     Warns
     -----
     RuntimeWarning
-        The half level is not met inside the window (nan), or is met more than twice in one of the four planes.
+        The half level is not met inside the window (nan), or is met more than twice in one of the four planes; the peak is a ring, in three
+        dimensions, and cuts pass through its place farthest along x.
     AccuracyWarning
         The estimated error of |p| in one of the planes is above rtol.
 

@@ -71,12 +71,13 @@ NO_BEAM = Beamlet(
 
 
 class Measured(NamedTuple):
-    """A beam, and the estimated errors of its |p| over the largest, of its power and of its area."""
+    """A beam, the estimated errors of its |p| over the largest, of its power and of its area, and whether its peak is a ring."""
 
     beamlet: Beamlet
     budget: ErrorBudget
     power: PowerError
     area: Area
+    ring: bool = False
 
 
 def reflected_and_transmitted(s: SampledSlab, source: Any, rtol: float, window: float | None) -> list[Measured]:
@@ -136,7 +137,7 @@ def _measure(
         moments_to=moments.end,
         rim=moments.rim,
     )
-    return Measured(beamlet, half.budget, radiated.error.plus(launched.error), area)
+    return Measured(beamlet, half.budget, radiated.error.plus(launched.error), area, half.peak.ring)
 
 
 # --- second moments ---------------------------------------------------------------------------------------

@@ -15,7 +15,8 @@ from ..response.sampled_slab import SampledSlab
 from ..sources.in_space import EllipticalGaussian, has_edge
 from ..sources.sum_in_space import SumInSpace
 from .fwhm import Width, full_width
-from .level_area import Area, Peak, area_above, peak_of
+from .level_area import Area, area_above
+from .peak import Peak, peak_of
 from .space_plane import Sampled, Way, widened
 from .windows import EDGE
 
@@ -43,10 +44,11 @@ class Section(NamedTuple):
 
 
 class Widths(NamedTuple):
-    """Widths, how often |p| meets the level in each plane along each axis, (4, 2), and the largest error."""
+    """Widths, how often |p| meets the level in each plane along each axis, (4, 2), in which planes the peak is a ring, (4,), and errors."""
 
     row: SpaceRow
     crossings: np.ndarray
+    rings: np.ndarray
     budget: ErrorBudget
     area: Area
 
@@ -71,7 +73,10 @@ def widths(s: SampledSlab, source: Any, level: float, rtol: float, distance: flo
     )
     sections = launch, near, far, air
     worst = functools.reduce(ErrorBudget.worse, (plane.budget for plane in sections))
-    return Widths(row, np.stack([plane.crossings for plane in sections]), worst, area)
+    crossings, rings = (
+        np.array(v) for v in zip(*((plane.crossings, plane.peak.ring) for plane in sections), strict=True)
+    )
+    return Widths(row, crossings, rings, worst, area)
 
 
 def _free(s: SampledSlab, source: Any, z: float, level: float, rtol: float) -> Section:
