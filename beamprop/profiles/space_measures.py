@@ -111,7 +111,7 @@ def _measure(
     if window is None:
         profile = widened(s, source, way, rtol, TAIL)
     else:
-        profile = sampled(s, source, way, Window(ray, np.full(2, window)), rtol)
+        profile = sampled(s, source, way, Window(ray, np.full(2, window), chosen=True), rtol)
     half = section(profile, 0.5)
     moments = _in_part(profile) if window is None else _in_window(profile)
     area = area_above(profile, half.peak, 0.5, rtol)

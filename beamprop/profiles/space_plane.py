@@ -41,8 +41,20 @@ class Plane(NamedTuple):
     budget: ErrorBudget
 
     def on_grid(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """p (Y, X) by two matrix products."""
-        return np.asarray(np.exp(1j * np.outer(y, self.ky)) @ (self.waves @ np.exp(1j * np.outer(self.kx, x))))
+        """p (Y, X) by two matrix products, in the cheaper order."""
+        along_y, along_x = np.exp(1j * np.outer(y, self.ky)), np.exp(1j * np.outer(self.kx, x))
+        x_first, y_first = self._terms(x.size, y.size)
+        product = along_y @ (self.waves @ along_x) if x_first <= y_first else (along_y @ self.waves) @ along_x
+        return np.asarray(product)
+
+    def _terms(self, along_x: int, along_y: int) -> tuple[float, float]:
+        """Of both products at so many positions, x first and y first."""
+        of_y, of_x = self.waves.shape
+        return float(along_x) * of_y * (of_x + along_y), float(along_y) * of_x * (of_y + along_x)
+
+    def terms(self, along_x: int, along_y: int) -> float:
+        """Of the products by which p is summed at so many positions along x and y."""
+        return min(self._terms(along_x, along_y))
 
     def along(self, axis: int, across: float) -> Callable[[np.ndarray], np.ndarray]:
         """p on the line along x (0) or y (1) at the position `across` it, as a function of positions of any shape."""
@@ -111,6 +123,10 @@ class PlaneOfSum(NamedTuple):
         each = (weight * np.array(plane.taylor(places - at, order)) for plane, weight, at in self._each)
         return list(np.asarray(sum(each)))
 
+    def terms(self, along_x: int, along_y: int) -> float:
+        """See `Plane.terms`."""
+        return sum(plane.terms(along_x, along_y) for plane in self.planes)
+
     @property
     def _each(self) -> Iterator[tuple[Plane, complex, np.ndarray]]:
         return zip(self.planes, self.weights, self.at, strict=True)
@@ -152,11 +168,12 @@ class Window(NamedTuple):
 
     middle: np.ndarray
     half: np.ndarray
+    chosen: bool = False  #: by the user
 
 
 def _plane_of(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Plane:
     """p of a single source across a plane on a contour that serves a window."""
-    grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(*window, strict=True))
+    grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(window.middle, window.half, strict=True))
     beams, planes, transfer = single(source), np.array([way.z]), way.of(source)
     quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
     contour = quadrature.contour
@@ -228,9 +245,9 @@ def _grid(plane: Plane | PlaneOfSum, window: Window) -> tuple[np.ndarray, np.nda
     steps = 2 * math.pi / (FINER * np.maximum(high - low, 1e-9))
     x, y = (
         m + h * np.linspace(-1, 1, 2 * max(48, math.ceil(h / step)) + 1)
-        for m, h, step in zip(*window, steps, strict=True)
+        for m, h, step in zip(window.middle, window.half, steps, strict=True)
     )
-    memory.check_terms(plane.points, x.size)
+    memory.check_products(plane.terms(x.size, y.size), plane.points, x.size * y.size, window.chosen)
     return x, y
 
 
@@ -252,9 +269,9 @@ def landing(s: SampledSlab, source: Any, way: Way) -> Window:
     """A window about the places where a source is bright; of a sum about those of all its sources."""
     return _joined(
         [
-            Window(middle + part.at, half)
+            own._replace(middle=own.middle + part.at)
             for part in parts_of(source)
-            for middle, half in [_landing(s, part.source, way.of(part.source), way.z)]
+            for own in [_landing(s, part.source, way.of(part.source), way.z)]
         ]
     )
 
