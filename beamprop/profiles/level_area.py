@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .peak import NEWTON, SETTLED, Peak
+from .peak import NEWTON, Peak
 from .space_plane import Plane, PlaneOfSum, Sampled
 
+#: Newton's step onto a line squares the error: behind one below this share of a grid step is rounding.
+SQUARED = 1e-6
 #: Points of the first boundary, and of the last: those of a boundary with sharp corners.
 FIRST, LAST = 128, 8192
 #: Degree of the splines through the boundary, and Gauss nodes that integrate its area exactly between two points.
@@ -100,14 +102,16 @@ def _spaced(loop: np.ndarray, count: int, degree: int) -> np.ndarray:
 
 def _on_level(plane: Plane | PlaneOfSum, places: np.ndarray, target: float, spacing: np.ndarray) -> np.ndarray:
     """Places moved along the gradient onto |p| = target, by no more than half a sample a step."""
+    places, moving = places.copy(), np.arange(len(places))
     for _ in range(NEWTON):
-        p, p_x, p_y = plane.taylor(places, 1)
+        p, p_x, p_y = plane.taylor(places[moving], 1)
         slope = 2 * np.real(np.conj(p) * np.stack([p_x, p_y]))
         excess = np.abs(p) ** 2 - target**2
         step = (-excess * slope / np.maximum(np.sum(slope**2, axis=0), 1e-300)).T
         step *= np.minimum(1.0, 0.5 / np.maximum(np.max(np.abs(step) / spacing, axis=1), 1e-300))[:, None]
-        places = places + step
-        if np.all(np.abs(step) <= SETTLED * spacing):
+        places[moving] += step
+        moving = moving[np.any(np.abs(step) > SQUARED * spacing, axis=1)]
+        if not moving.size:
             break
     return places
 

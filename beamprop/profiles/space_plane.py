@@ -19,11 +19,14 @@ from ..response.transfer_function import TransferFunction
 from ..sources.angles import single
 from ..sources.in_space import has_edge, unit_vector
 from ..sources.sum_in_space import SumInSpace, parts_of
-from .windows import FAINT
+from .windows import EDGE, FAINT
 
-#: A window is doubled while it does not hold what is measured, up to so many times, and while its lattice has no more points than this: the next
-#: has four times as many, a second or so.
+#: A window is doubled along an axis while it does not hold what is measured, up to so many times, and while its lattice has no more points
+#: than this: the next has up to four times as many, a second or so.
 DOUBLINGS, MOST_POINTS = 5, 100_000
+#: An axis on whose ends |p| is above this share of the largest is widened before one that has its tails alone left outside: all widths by a
+#: level, down to 1/e, are known below it.
+LEVELS = EDGE * math.exp(-1)
 #: Rays in each direction by which the first window is chosen, and how far in front of grazing they end [k0].
 RAYS, GRAZING = 41, 0.98
 #: Positions of a grid for each turn of |p|^2 along it: three for each of |p|, which is sampled finely enough for its maxima to show.
@@ -193,9 +196,14 @@ class Sampled(NamedTuple):
     @property
     def rim(self) -> float:
         """The largest |p| on the window's rim over that inside; 0 where nothing arrives."""
+        return float(self.rims.max())
+
+    @property
+    def rims(self) -> np.ndarray:
+        """Those on the ends along x, and along y: (2,)."""
         size = np.abs(self.p)
-        rim = max(float(v.max()) for v in (size[0], size[-1], size[:, 0], size[:, -1]))
-        return rim / float(size.max()) if rim > 0 else 0.0
+        ends = np.array([size[:, [0, -1]].max(), size[[0, -1]].max()])
+        return ends / size.max() if ends.any() else np.zeros(2)
 
 
 def sampled(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Sampled:
@@ -254,15 +262,21 @@ def _grid(plane: Plane | PlaneOfSum, window: Window) -> tuple[np.ndarray, np.nda
 def widened(s: SampledSlab, source: Any, way: Way, rtol: float, rim: float) -> Sampled:
     """p across the plane of a way, in the first of ever wider windows on whose rim |p| is below `rim` of the largest.
 
-    They lie about where the source lands.
+    They lie about where the source lands, and widen along the axes that need it: those of a line of elements across it, where each element's
+    waves spread.
     """
     window = landing(s, source, way)
-    for doubling in range(DOUBLINGS + 1):
+    doublings = np.zeros(2, int)
+    while True:
         profile = sampled(s, source, way, window, rtol)
-        if profile.rim < rim or doubling == DOUBLINGS or profile.plane.points > MOST_POINTS:
-            break
-        window = window._replace(half=2 * window.half)
-    return profile
+        wider = (profile.rims >= rim) & (doublings < DOUBLINGS)
+        urgent = wider & (profile.rims >= LEVELS)
+        wider = urgent if urgent.any() else wider
+        # one axis alone doubles the lattice at first
+        if not wider.any() or profile.plane.points > MOST_POINTS * (2 if urgent.sum() == 1 else 1):
+            return profile
+        doublings += wider
+        window = window._replace(half=np.where(wider, 2, 1) * window.half)
 
 
 def landing(s: SampledSlab, source: Any, way: Way) -> Window:
