@@ -110,7 +110,7 @@ def widths_in_space(question: SpaceBeams, air_distance: float | None, progress: 
     table["centroid_out"] += question.origin
     checks.warn_if_inaccurate(worst, beams.rtol)
     _warn_of_corners(corners, beams.rtol)
-    left_open = isinstance(question.beam, SourceSum) and has_edge(in_space(question.beam, question.given))
+    left_open = space_widths.left_open(in_space(question.beam, question.given))
     missed = {name: values for name, values in table.items() if not (left_open and name == "fwhm_launch")}
     _warn_of_missing(missed, "no half level inside the window")
     _warn_of_rings([name for name, ring in zip(names, rings, strict=False) if ring])

@@ -105,15 +105,17 @@ def cuts_of(profile: Sampled, peak: Peak, level: float) -> list[Width]:
 
 
 def known_launch(source: Any, level: float) -> Section | None:
-    """The launched width where it is known: of a Gaussian, and a sharp edge's diameter, of an array its elements'.
+    """The launched width where it is known: of a Gaussian, and a sharp edge's diameter.
 
-    Where sources of a sum have sharp edges, which no lattice resolves on their plane, it is left open, nan.
+    Where sources of a sum or elements of an array have sharp edges, which no lattice resolves on their plane, it is left open, nan.
     """
     if isinstance(source, SumInSpace):
         if len(source.parts) == 1:
             return known_launch(source.parts[0].source, level)
         if not has_edge(source):
             return None
+        width = np.full(2, np.nan)
+    elif left_open(source):
         width = np.full(2, np.nan)
     elif isinstance(source, EllipticalGaussian):
         width = 2 * np.array(source.radii) * math.sqrt(math.log(1 / level))
@@ -122,6 +124,12 @@ def known_launch(source: Any, level: float) -> Section | None:
     else:
         return None
     return Section(Peak(np.full(2, np.nan), np.nan), width, np.full(2, 2.0), uniform_budget(1, 0.0))
+
+
+def left_open(source: Any) -> bool:
+    """Whether the launched width is that of several sharp edges: of a sum, or of an array of more than one position."""
+    several = isinstance(source, SumInSpace) or len(getattr(source, "positions", ())) > 1
+    return several and has_edge(source)
 
 
 def centroid(profile: Sampled) -> np.ndarray:
