@@ -178,14 +178,38 @@ def check_contour(waves: float, beams: int = 1, planes: int = 9) -> None:
 MOST_TERMS = 2e9
 
 
+#: Terms of the two products by which a plane is summed at the positions of a window: 1.7e9 take a second on one core.
+MOST_PRODUCTS = 1e10
+
+
 def check_terms(waves: int, points: int) -> None:
     """The sum by which a beam is looked for in a window, of which nobody has chosen the positions."""
     if (terms := float(waves) * points) > MOST_TERMS:
-        raise ValueError(
-            f"slab: expected one in which the beam is found by sums of at most {MOST_TERMS:.3g} terms, got one that takes "
-            f"{terms:.3g} ({waves:.3g} plane waves at {points:.3g} positions, {terms / 7e8:.0f} s for each of several windows): "
-            "give it some loss, or take a thinner one, a nearer launch plane or a larger rtol, or ask for the field at positions of your choice"
-        )
+        raise _too_many_terms((terms, MOST_TERMS, 7e8), waves, points)
+
+
+def check_products(terms: float, waves: int, points: int, chosen: bool) -> None:
+    """The products by which a plane is summed at the positions of a window, `chosen` by the user or widened to hold the beam."""
+    if terms <= MOST_PRODUCTS:
+        return
+    if not chosen:
+        raise _too_many_terms((terms, MOST_PRODUCTS, 1.7e9), waves, points)
+    raise ValueError(
+        f"window: expected one in which the beam is summed by products of at most {MOST_PRODUCTS:.3g} terms, got one that takes {terms:.3g} "
+        f"({waves:.3g} plane waves at {points:.3g} positions, {terms / 1.7e9:.0f} s): take a smaller one, a larger rtol, or ask for the field "
+        "at positions of your choice"
+    )
+
+
+def _too_many_terms(terms: tuple[float, float, float], waves: int, points: int) -> ValueError:
+    """Of terms, how many there may be, and how many take a second."""
+    count, most, of_second = terms
+    return ValueError(
+        f"slab: expected one in which the beam is found by sums of at most {most:.3g} terms, got one that takes "
+        f"{count:.3g} ({waves:.3g} plane waves at {points:.3g} positions, {count / of_second:.0f} s for each of several windows): "
+        "give it some loss, or take a thinner one, a nearer launch plane or a larger rtol, choose the window= of beam_measures, or ask for "
+        "the field at positions of your choice"
+    )
 
 
 def most_values(bytes_each: float = 600.0) -> float:

@@ -7,7 +7,6 @@ import pytest
 import space_oracles as oracles
 from scipy.ndimage import label
 from scipy.optimize import brentq, minimize
-from scipy.special import lambertw
 
 import beamprop as bp
 
@@ -42,18 +41,6 @@ def test_a_launched_ellipse_is_as_wide_as_it_says(width_of):
     assert float(ds.equivalent_out) == pytest.approx(np.sqrt(0.3 * 0.15), rel=1e-6)
     assert float(ds.peak_out) == pytest.approx(1, rel=1e-6)
     assert ds.centroid_out.values == pytest.approx([0.02, -0.03], abs=1e-6)
-
-
-def test_a_ring_has_a_hole():
-    """|p| = (r/a)^2 exp(1 - (r/a)^2): half of its peak at -W(-1/2e) and -W_-1(-1/2e) of (r/a)^2, W Lambert's function."""
-    a = 0.05
-    x = np.linspace(-0.25, 0.25, 201)
-    r2 = (x**2 + x[:, None] ** 2) / a**2
-    with pytest.warns(RuntimeWarning, match="half level is met up to 4 times"):
-        ds = bp.beam_width(THIN, bp.SourcePlane(x, x, r2 * np.exp(1 - r2)), FREQUENCY)
-    inner, outer = (-float(lambertw(-0.5 / np.e, branch).real) for branch in (0, -1))
-    assert float(ds.area_out) == pytest.approx(np.pi * a**2 * (outer - inner), rel=1e-7)
-    assert ds.fwhm_out.values[0] == pytest.approx(a * (np.sqrt(outer) - np.sqrt(inner)), rel=1e-7)
 
 
 @pytest.mark.parametrize("slab", [LOSSLESS, LOSSY])
@@ -242,16 +229,19 @@ def test_widths_of_transducers_are_those_of_their_fields(name):
 
 
 def test_launched_widths_of_transducers_are_their_diameters():
+    """Of several sharp edges it is left open, without a warning."""
     piston = bp.Piston(0.01, z0=-0.03)
     for source, width in (
         (piston, 0.02),
         (bp.Bowl(0.064, 0.05, z0=-0.03), 0.05),
-        (bp.Array(ROW, bp.Piston(0.0012, z0=-0.03)), 0.0024),
+        (bp.Array(ROW, bp.Piston(0.0012, z0=-0.03)), np.nan),
+        (bp.Array([[0.001, 0.002]], bp.Piston(0.0012, z0=-0.03)), 0.0024),
     ):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
+            warnings.filterwarnings("error", ".*nan in .*fwhm_launch")
             ds = bp.beam_width(PLATE, source, MHZ, rtol=1e-4)
-        assert ds.fwhm_launch.values == pytest.approx([width, width])
+        assert ds.fwhm_launch.values == pytest.approx([width, width], nan_ok=True)
 
 
 # --- what is asked, and what comes ------------------------------------------------------------------------

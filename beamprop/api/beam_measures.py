@@ -54,7 +54,7 @@ def beam_measures(
         Half-width of a window about the geometric ray of each side: everything on x is measured in it, and moments are
         integrals over all of it. For slabs without loss, whose guided waves run along for ever: without them the centroid is
         that of the beam alone, with them it depends on how far one looks. By default the window is widened until |p| falls
-        to a hundredth of its peak on both sides.
+        to a hundredth of its peak on both sides; in three dimensions along each axis, as far as lattices of plane waves stay small.
     azimuth : float, degree, optional
         Makes it a question of three dimensions, as a beam of two widths, an azimuth or a y0 and transducers do by themselves; overrides the
         beam's, the direction of its tilt from x towards y.
@@ -90,7 +90,8 @@ def beam_measures(
     -----
     RuntimeWarning
         A level is not reached inside the window, or nothing goes that way (nan); the half level is met more than twice; |p|
-        does not fall to a hundredth in the widest window that is tried, and none was given.
+        does not fall to a hundredth in the widest window that is tried, and none was given; the peak is a ring, in three dimensions, and cuts
+        pass through its place farthest along x.
     AccuracyWarning
         The estimated error of a beam's |p|, over the largest, or of its power, over that power, is above rtol.
 

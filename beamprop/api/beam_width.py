@@ -65,12 +65,13 @@ def beam_width(
         In three dimensions the four widths, of cuts through the peak of each plane, and the centroid have a dimension `axis`, "x" and "y". Beside
         them are `area_out` [m^2], the connected part of the far face around the peak where |p| (or |p|^2) is half of it or more, and
         `equivalent_out` [m], the diameter of a disc of that area. `fwhm_launch` of a source with a sharp edge is the edge's
-        diameter, and that of a sum with such sources is left open, nan.
+        diameter, and that of a sum with such sources, or of an Array of several such elements, is left open, nan.
 
     Warns
     -----
     RuntimeWarning
-        The half level is not met inside the window (nan), or is met more than twice in one of the four planes.
+        The half level is not met inside the window (nan), or is met more than twice in one of the four planes; the peak is a ring, in three
+        dimensions, and cuts pass through its place farthest along x.
     AccuracyWarning
         The estimated error of |p| in one of the planes is above rtol.
 

@@ -96,22 +96,23 @@ def widths_in_space(question: SpaceBeams, air_distance: float | None, progress: 
     shape, many = (flat.size, angles.size), ("fwhm_launch", "fwhm_in", "fwhm_out", "fwhm_air", "centroid_out")
     names = space_widths.SpaceRow._fields
     table = {name: np.empty((*shape, 2) if name in many else shape) for name in names}
-    worst, most, corners = uniform_budget(1, 0.0), np.zeros((4, 2), int), 0.0
+    worst, most, corners, rings = uniform_budget(1, 0.0), np.zeros((4, 2), int), 0.0, np.zeros(4, bool)
     for i, j in watched(progress, list(itertools.product(*map(range, shape))), "widths"):
         s = sample(slab, float(flat[i]))
         source = question.at_angle(float(angles[j]))
         distance = 4 * math.pi / s.k0 if air_distance is None else air_distance
         measured = space_widths.widths(s, source, level, beams.rtol, distance)
         worst, corners = worst.worse(measured.budget), max(corners, measured.area.change)
-        most = np.maximum(most, measured.crossings.astype(int))
+        most, rings = np.maximum(most, measured.crossings.astype(int)), rings | measured.rings
         for name, value in measured.row._asdict().items():
             table[name][i, j] = value
     table["centroid_out"] += question.origin
     checks.warn_if_inaccurate(worst, beams.rtol)
     _warn_of_corners(corners, beams.rtol)
-    left_open = isinstance(question.beam, SourceSum) and has_edge(in_space(question.beam, question.given))
+    left_open = space_widths.left_open(in_space(question.beam, question.given))
     missed = {name: values for name, values in table.items() if not (left_open and name == "fwhm_launch")}
     _warn_of_missing(missed, "no half level inside the window")
+    _warn_of_rings([name for name, ring in zip(names, rings, strict=False) if ring])
     checks.warn_of_crossings(
         int(most.max()), ", ".join(n for n, times in zip(names, most.max(axis=1), strict=False) if times > 2)
     )
@@ -129,12 +130,14 @@ def measures_in_space(question: SpaceBeams, window: float | None, progress: Prog
     by_axis, names = space_measures.BY_AXIS, space_measures.Beamlet._fields
     table = {name: np.full((*shape, 2, 2) if name in by_axis else (*shape, 2), np.nan) for name in names}
     worst, of_power, corners = uniform_budget(1, 0.0), PowerError(), 0.0
+    rings: set[str] = set()
     for i, j in watched(progress, list(itertools.product(*map(range, shape))), "beams"):
         s, source = sample(question.slab, float(flat[i])), question.at_angle(float(angles[j]))
         both = space_measures.reflected_and_transmitted(s, source, rtol, window)
         for side, measured in enumerate(both):
             worst, corners = worst.worse(measured.budget), max(corners, measured.area.change)
             of_power = max(of_power, measured.power, key=lambda error: error.total)
+            rings |= {SIDES[side]} if measured.ring else set()
             for name, value in measured.beamlet._asdict().items():
                 table[name][i, j, side] = value
     for name in ("centroid", "moments_from", "moments_to"):
@@ -144,6 +147,7 @@ def measures_in_space(question: SpaceBeams, window: float | None, progress: Prog
     _warn_of_corners(corners, rtol)
     _warn_of_missing(table, "no beam on a side, or a level not reached inside the window")
     warn_of_cut_moments(table["rim"], window is not None)
+    _warn_of_rings(sorted(rings))
     checks.warn_of_crossings(int(table["crossings"].max()))
     table["crossings"] = table["crossings"].astype(int)
     dims: dict[str, tuple[str, ...]] = {name: ("side", "axis") if name in by_axis else ("side",) for name in names}
@@ -168,6 +172,15 @@ def _warn_of_missing(table: dict[str, np.ndarray], why: str) -> None:
     missing = [name for name in table if np.any(np.isnan(table[name]))]
     if missing:
         warnings.warn(f"{why}: nan in {', '.join(missing)}", RuntimeWarning, stacklevel=4)
+
+
+def _warn_of_rings(names: list[str]) -> None:
+    if names:
+        warnings.warn(
+            f"the peak is a ring, to within the error; cuts pass through its place farthest along x: {', '.join(names)}",
+            RuntimeWarning,
+            stacklevel=4,
+        )
 
 
 def _warn_of_corners(change: float, rtol: float) -> None:

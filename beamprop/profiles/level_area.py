@@ -8,67 +8,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .peak import NEWTON, Peak
 from .space_plane import Plane, PlaneOfSum, Sampled
 
-#: Maxima of the samples of more than this share of the largest are candidates for the peak: between samples |p| rises by no more.
-CANDIDATES = 0.8
-#: Newton's method squares errors of a grid step's size: 8 steps are many, and what is below this share of a grid step is rounding.
-NEWTON, SETTLED = 12, 1e-11
-#: Maxima that differ by less than this share are the same one.
-EQUAL = 1e-9
+#: Newton's step onto a line squares the error: behind one below this share of a grid step is rounding.
+SQUARED = 1e-6
 #: Points of the first boundary, and of the last: those of a boundary with sharp corners.
 FIRST, LAST = 128, 8192
 #: Degree of the splines through the boundary, and Gauss nodes that integrate its area exactly between two points.
 DEGREE, GAUSS = 5, 5
-
-
-class Peak(NamedTuple):
-    """Place and size of the largest |p|."""
-
-    place: np.ndarray  #: (2,) m from the source's middle
-    size: float  #: Pa
-
-
-def peak_of(profile: Sampled) -> Peak:
-    """The largest |p| of a plane, by Newton's method on its plane waves from the largest samples."""
-    size = np.abs(profile.p)
-    padded = np.pad(size, 1)
-    around = [
-        padded[1 + i : 1 + i + size.shape[0], 1 + j : 1 + j + size.shape[1]] for i in (-1, 0, 1) for j in (-1, 0, 1)
-    ]
-    top = (size >= np.max(around, axis=0)) & (size > CANDIDATES * size.max())
-    row, column = np.nonzero(top)
-    begin = np.stack([profile.x[column], profile.y[row]], axis=1)
-    spacing = np.array([profile.x[1] - profile.x[0], profile.y[1] - profile.y[0]])
-    places = _maxima(profile.plane, begin, spacing)
-    reached = np.concatenate([places, begin])
-    sizes = np.abs(profile.plane.taylor(reached, 0)[0])
-    # of equal ones, those of a ring say, that farthest along x, or y: rounding must not decide
-    equal = sizes > (1 - EQUAL) * sizes.max()
-    best = int(np.argmax(np.where(equal, reached @ [1.0, 1e-3], -np.inf)))
-    return Peak(reached[best], float(sizes.max()))
-
-
-def _maxima(plane: Plane | PlaneOfSum, places: np.ndarray, spacing: np.ndarray) -> np.ndarray:
-    """Maxima of |p|^2 within a sample of places (P, 2)."""
-    begin = places
-    for _ in range(NEWTON):
-        p, p_x, p_y, p_xx, p_xy, p_yy = plane.taylor(places, 2)
-        slope = np.real(np.conj(p) * np.stack([p_x, p_y]))
-        xx, xy, yy = (
-            np.real(np.conj(a) * b + np.conj(p) * c)
-            for a, b, c in ((p_x, p_x, p_xx), (p_x, p_y, p_xy), (p_y, p_y, p_yy))
-        )
-        bend = xx * yy - xy * xy
-        concave = (bend > 0) & (xx < 0)
-        bend = np.where(concave, bend, 1.0)
-        step = np.stack([yy * slope[0] - xy * slope[1], xx * slope[1] - xy * slope[0]], axis=1) / -bend[:, None]
-        moved = np.where(concave[:, None], np.clip(places + step, begin - spacing, begin + spacing), places)
-        still = bool(np.all(np.abs(moved - places) <= SETTLED * spacing))
-        places = moved
-        if still:
-            break
-    return places
 
 
 def connected(inside: np.ndarray, at: tuple[int, int]) -> np.ndarray:
@@ -154,14 +102,16 @@ def _spaced(loop: np.ndarray, count: int, degree: int) -> np.ndarray:
 
 def _on_level(plane: Plane | PlaneOfSum, places: np.ndarray, target: float, spacing: np.ndarray) -> np.ndarray:
     """Places moved along the gradient onto |p| = target, by no more than half a sample a step."""
+    places, moving = places.copy(), np.arange(len(places))
     for _ in range(NEWTON):
-        p, p_x, p_y = plane.taylor(places, 1)
+        p, p_x, p_y = plane.taylor(places[moving], 1)
         slope = 2 * np.real(np.conj(p) * np.stack([p_x, p_y]))
         excess = np.abs(p) ** 2 - target**2
         step = (-excess * slope / np.maximum(np.sum(slope**2, axis=0), 1e-300)).T
         step *= np.minimum(1.0, 0.5 / np.maximum(np.max(np.abs(step) / spacing, axis=1), 1e-300))[:, None]
-        places = places + step
-        if np.all(np.abs(step) <= SETTLED * spacing):
+        places[moving] += step
+        moving = moving[np.any(np.abs(step) > SQUARED * spacing, axis=1)]
+        if not moving.size:
             break
     return places
 

@@ -67,12 +67,13 @@ NO_BEAM = Beamlet(
 
 
 class Measured(NamedTuple):
-    """A beam, and the estimated errors of its |p| over the largest, of its power and of its area."""
+    """A beam, the estimated errors of its |p| over the largest, of its power and of its area, and whether its peak is a ring."""
 
     beamlet: Beamlet
     budget: ErrorBudget
     power: PowerError
     area: Area
+    ring: bool = False
 
 
 def reflected_and_transmitted(s: SampledSlab, source: Any, rtol: float, window: float | None) -> list[Measured]:
@@ -106,7 +107,7 @@ def _measure(
     if window is None:
         profile = widened(s, source, way, rtol, TAIL)
     else:
-        profile = sampled(s, source, way, Window(ray, np.full(2, window)), rtol)
+        profile = sampled(s, source, way, Window(ray, np.full(2, window), chosen=True), rtol)
     half = section(profile, 0.5)
     moments = _in_part(profile) if window is None else _in_window(profile)
     area = area_above(profile, half.peak, 0.5, rtol)
@@ -132,7 +133,7 @@ def _measure(
         moments_to=moments.end,
         rim=moments.rim,
     )
-    return Measured(beamlet, half.budget, radiated.error.plus(launched.error), area)
+    return Measured(beamlet, half.budget, radiated.error.plus(launched.error), area, half.peak.ring)
 
 
 # --- second moments ---------------------------------------------------------------------------------------

@@ -19,11 +19,14 @@ from ..response.transfer_function import TransferFunction
 from ..sources.angles import single
 from ..sources.in_space import has_edge, unit_vector
 from ..sources.sum_in_space import SumInSpace, parts_of
-from .windows import FAINT
+from .windows import EDGE, FAINT
 
-#: A window is doubled while it does not hold what is measured, up to so many times, and while its lattice has no more points than this: the next
-#: has four times as many, a second or so.
+#: A window is doubled along an axis while it does not hold what is measured, up to so many times, and while its lattice has no more points
+#: than this: the next has up to four times as many, a second or so.
 DOUBLINGS, MOST_POINTS = 5, 100_000
+#: An axis on whose ends |p| is above this share of the largest is widened before one that has its tails alone left outside: all widths by a
+#: level, down to 1/e, are known below it.
+LEVELS = EDGE * math.exp(-1)
 #: Rays in each direction by which the first window is chosen, and how far in front of grazing they end [k0].
 RAYS, GRAZING = 41, 0.98
 #: Positions of a grid for each turn of |p|^2 along it: three for each of |p|, which is sampled finely enough for its maxima to show.
@@ -41,8 +44,20 @@ class Plane(NamedTuple):
     budget: ErrorBudget
 
     def on_grid(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """p (Y, X) by two matrix products."""
-        return np.asarray(np.exp(1j * np.outer(y, self.ky)) @ (self.waves @ np.exp(1j * np.outer(self.kx, x))))
+        """p (Y, X) by two matrix products, in the cheaper order."""
+        along_y, along_x = np.exp(1j * np.outer(y, self.ky)), np.exp(1j * np.outer(self.kx, x))
+        x_first, y_first = self._terms(x.size, y.size)
+        product = along_y @ (self.waves @ along_x) if x_first <= y_first else (along_y @ self.waves) @ along_x
+        return np.asarray(product)
+
+    def _terms(self, along_x: int, along_y: int) -> tuple[float, float]:
+        """Of both products at so many positions, x first and y first."""
+        of_y, of_x = self.waves.shape
+        return float(along_x) * of_y * (of_x + along_y), float(along_y) * of_x * (of_y + along_x)
+
+    def terms(self, along_x: int, along_y: int) -> float:
+        """Of the products by which p is summed at so many positions along x and y."""
+        return min(self._terms(along_x, along_y))
 
     def along(self, axis: int, across: float) -> Callable[[np.ndarray], np.ndarray]:
         """p on the line along x (0) or y (1) at the position `across` it, as a function of positions of any shape."""
@@ -111,6 +126,10 @@ class PlaneOfSum(NamedTuple):
         each = (weight * np.array(plane.taylor(places - at, order)) for plane, weight, at in self._each)
         return list(np.asarray(sum(each)))
 
+    def terms(self, along_x: int, along_y: int) -> float:
+        """See `Plane.terms`."""
+        return sum(plane.terms(along_x, along_y) for plane in self.planes)
+
     @property
     def _each(self) -> Iterator[tuple[Plane, complex, np.ndarray]]:
         return zip(self.planes, self.weights, self.at, strict=True)
@@ -152,11 +171,12 @@ class Window(NamedTuple):
 
     middle: np.ndarray
     half: np.ndarray
+    chosen: bool = False  #: by the user
 
 
 def _plane_of(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Plane:
     """p of a single source across a plane on a contour that serves a window."""
-    grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(*window, strict=True))
+    grid = tuple(m + h * np.linspace(-1, 1, 33) for m, h in zip(window.middle, window.half, strict=True))
     beams, planes, transfer = single(source), np.array([way.z]), way.of(source)
     quadrature = choose_in_space(s, beams, transfer, (grid[0], grid[1]), planes, rtol)
     contour = quadrature.contour
@@ -176,9 +196,14 @@ class Sampled(NamedTuple):
     @property
     def rim(self) -> float:
         """The largest |p| on the window's rim over that inside; 0 where nothing arrives."""
+        return float(self.rims.max())
+
+    @property
+    def rims(self) -> np.ndarray:
+        """Those on the ends along x, and along y: (2,)."""
         size = np.abs(self.p)
-        rim = max(float(v.max()) for v in (size[0], size[-1], size[:, 0], size[:, -1]))
-        return rim / float(size.max()) if rim > 0 else 0.0
+        ends = np.array([size[:, [0, -1]].max(), size[[0, -1]].max()])
+        return ends / size.max() if ends.any() else np.zeros(2)
 
 
 def sampled(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) -> Sampled:
@@ -228,33 +253,39 @@ def _grid(plane: Plane | PlaneOfSum, window: Window) -> tuple[np.ndarray, np.nda
     steps = 2 * math.pi / (FINER * np.maximum(high - low, 1e-9))
     x, y = (
         m + h * np.linspace(-1, 1, 2 * max(48, math.ceil(h / step)) + 1)
-        for m, h, step in zip(*window, steps, strict=True)
+        for m, h, step in zip(window.middle, window.half, steps, strict=True)
     )
-    memory.check_terms(plane.points, x.size)
+    memory.check_products(plane.terms(x.size, y.size), plane.points, x.size * y.size, window.chosen)
     return x, y
 
 
 def widened(s: SampledSlab, source: Any, way: Way, rtol: float, rim: float) -> Sampled:
     """p across the plane of a way, in the first of ever wider windows on whose rim |p| is below `rim` of the largest.
 
-    They lie about where the source lands.
+    They lie about where the source lands, and widen along the axes that need it: those of a line of elements across it, where each element's
+    waves spread.
     """
     window = landing(s, source, way)
-    for doubling in range(DOUBLINGS + 1):
+    doublings = np.zeros(2, int)
+    while True:
         profile = sampled(s, source, way, window, rtol)
-        if profile.rim < rim or doubling == DOUBLINGS or profile.plane.points > MOST_POINTS:
-            break
-        window = window._replace(half=2 * window.half)
-    return profile
+        wider = (profile.rims >= rim) & (doublings < DOUBLINGS)
+        urgent = wider & (profile.rims >= LEVELS)
+        wider = urgent if urgent.any() else wider
+        # one axis alone doubles the lattice at first
+        if not wider.any() or profile.plane.points > MOST_POINTS * (2 if urgent.sum() == 1 else 1):
+            return profile
+        doublings += wider
+        window = window._replace(half=np.where(wider, 2, 1) * window.half)
 
 
 def landing(s: SampledSlab, source: Any, way: Way) -> Window:
     """A window about the places where a source is bright; of a sum about those of all its sources."""
     return _joined(
         [
-            Window(middle + part.at, half)
+            own._replace(middle=own.middle + part.at)
             for part in parts_of(source)
-            for middle, half in [_landing(s, part.source, way.of(part.source), way.z)]
+            for own in [_landing(s, part.source, way.of(part.source), way.z)]
         ]
     )
 

@@ -15,7 +15,8 @@ from ..response.sampled_slab import SampledSlab
 from ..sources.in_space import EllipticalGaussian, has_edge
 from ..sources.sum_in_space import SumInSpace
 from .fwhm import Width, full_width
-from .level_area import Area, Peak, area_above, peak_of
+from .level_area import Area, area_above
+from .peak import Peak, peak_of
 from .space_plane import Sampled, Way, widened
 from .windows import EDGE
 
@@ -43,10 +44,11 @@ class Section(NamedTuple):
 
 
 class Widths(NamedTuple):
-    """Widths, how often |p| meets the level in each plane along each axis, (4, 2), and the largest error."""
+    """Widths, how often |p| meets the level in each plane along each axis, (4, 2), in which planes the peak is a ring, (4,), and errors."""
 
     row: SpaceRow
     crossings: np.ndarray
+    rings: np.ndarray
     budget: ErrorBudget
     area: Area
 
@@ -71,7 +73,10 @@ def widths(s: SampledSlab, source: Any, level: float, rtol: float, distance: flo
     )
     sections = launch, near, far, air
     worst = functools.reduce(ErrorBudget.worse, (plane.budget for plane in sections))
-    return Widths(row, np.stack([plane.crossings for plane in sections]), worst, area)
+    crossings, rings = (
+        np.array(v) for v in zip(*((plane.crossings, plane.peak.ring) for plane in sections), strict=True)
+    )
+    return Widths(row, crossings, rings, worst, area)
 
 
 def _free(s: SampledSlab, source: Any, z: float, level: float, rtol: float) -> Section:
@@ -100,15 +105,17 @@ def cuts_of(profile: Sampled, peak: Peak, level: float) -> list[Width]:
 
 
 def known_launch(source: Any, level: float) -> Section | None:
-    """The launched width where it is known: of a Gaussian, and a sharp edge's diameter, of an array its elements'.
+    """The launched width where it is known: of a Gaussian, and a sharp edge's diameter.
 
-    Where sources of a sum have sharp edges, which no lattice resolves on their plane, it is left open, nan.
+    Where sources of a sum or elements of an array have sharp edges, which no lattice resolves on their plane, it is left open, nan.
     """
     if isinstance(source, SumInSpace):
         if len(source.parts) == 1:
             return known_launch(source.parts[0].source, level)
         if not has_edge(source):
             return None
+        width = np.full(2, np.nan)
+    elif left_open(source):
         width = np.full(2, np.nan)
     elif isinstance(source, EllipticalGaussian):
         width = 2 * np.array(source.radii) * math.sqrt(math.log(1 / level))
@@ -117,6 +124,12 @@ def known_launch(source: Any, level: float) -> Section | None:
     else:
         return None
     return Section(Peak(np.full(2, np.nan), np.nan), width, np.full(2, 2.0), uniform_budget(1, 0.0))
+
+
+def left_open(source: Any) -> bool:
+    """Whether the launched width is that of several sharp edges: of a sum, or of an array of more than one position."""
+    several = isinstance(source, SumInSpace) or len(getattr(source, "positions", ())) > 1
+    return several and has_edge(source)
 
 
 def centroid(profile: Sampled) -> np.ndarray:
