@@ -32,7 +32,9 @@ def stack(before: tuple, layers: Sequence[tuple[tuple, float]], after: tuple, pe
 def plane_wave(slab: bp.Slab, frequency: float, **lateral: float) -> tuple[complex, complex]:
     """r and t."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", bp.HintWarning)  # steel as a fluid is meant: the closed forms are those of fluids
+        warnings.simplefilter(
+            "ignore", bp.HintWarning
+        )  # steel as a fluid is meant: the closed forms are those of fluids
         ds = bp.scattering(slab, frequency, **lateral)
     return complex(ds.r), complex(ds.t)
 
