@@ -51,3 +51,14 @@ def test_segments_begin_where_the_sum_of_all_before_them_is():
     for station, segment in zip(stations, segments, strict=True):
         assert station.start == float(begin)
         begin += segment.periods * sum(Fraction(float(v)) for v in segment.layers.thickness)
+
+
+@pytest.mark.parametrize("side", [-1, 0, 1])
+@pytest.mark.filterwarnings("error::beamprop.AccuracyWarning")
+def test_rounding_of_a_depth_does_not_decide_on_which_side_of_a_membrane_it_lies(side):
+    """p jumps over one; on it and a last place in front it is that behind, between periods and at the slab's end, without a warning."""
+    slab = bp.Slab([bp.Layer(bp.Fluid(2.0, 3e5), 2.5e-3), bp.Layer(bp.AIR, 1e-3), bp.Membrane(0.3)], 5)
+    beam, z = bp.GaussianBeam(0.1, z0=-0.1), np.array([3.5e-3, 1.05e-2, 1.75e-2])
+    moved = z if side == 0 else np.nextafter(z, side * np.inf)
+    p, behind = (bp.field(slab, beam, FREQUENCY, [0.0, 0.01], at).p.values for at in (moved, z * (1 + 1e-9)))
+    np.testing.assert_allclose(p, behind, rtol=1e-5)

@@ -15,6 +15,9 @@ from .layer import Entire, State, layer_back, normalised, several_layers
 from .periods import BlochPhase, bloch_phase, power_back
 from .solid_run import run_back
 
+#: A depth so near in front of a face, over the depth, lies on it: rounding may not decide on which side of a membrane, over which p jumps.
+ON_FACE = 8 * float(np.finfo(float).eps)
+
 
 class Station(NamedTuple):
     """One segment of the recursion: its far-face state, its matrix (None for a single period) and the depth where it begins.
@@ -57,7 +60,7 @@ def carry_back(
 
 def segment_of(starts: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Which segment each depth lies in."""
-    return np.clip(np.searchsorted(starts, z, side="right") - 1, 0, None)
+    return np.clip(np.searchsorted(starts, z * (1 + ON_FACE), side="right") - 1, 0, None)
 
 
 def _through_layers(
@@ -120,15 +123,16 @@ def period_of(values: SegmentValues) -> tuple[float, float, float]:
 
 
 def places_of(values: SegmentValues, depth: np.ndarray) -> Places:
-    """Places of depths behind the segment's near face."""
+    """Places of depths behind the segment's near face; those on a face, to their last places, lie behind it."""
     layers, periods = values
     faces = np.concatenate([[0.0], np.cumsum(layers.thickness)])
-    period = np.clip(np.floor(depth / faces[-1]).astype(int), 0, periods - 1)
+    near = ON_FACE * np.abs(depth)
+    period = np.clip(np.floor((depth + near) / faces[-1]).astype(int), 0, periods - 1)
     offset = depth
     for part in period_of(values):
         offset = offset - period * part
     offset = np.clip(offset, 0.0, faces[-1])
     solid = np.flatnonzero(layers.thickness > 0)
-    layer = solid[np.clip(np.searchsorted(faces[solid], offset, side="right") - 1, 0, len(solid) - 1)]
+    layer = solid[np.clip(np.searchsorted(faces[solid], offset + near, side="right") - 1, 0, len(solid) - 1)]
     share = np.clip((faces[layer + 1] - offset) / layers.thickness[layer], 0.0, 1.0)
     return Places(period, layer, share)

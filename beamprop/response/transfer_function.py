@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from .recursion import ON_FACE
 from .sampled_slab import SampledSlab
 from .slab import Response
 
@@ -115,7 +116,7 @@ def over_distance(s: SampledSlab, kx: np.ndarray, distance: np.ndarray) -> np.nd
 def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> np.ndarray:
     """Total pressure at depths z (Z,) of a source on z0, at one frequency: (Z, n)."""
     out = np.empty((z.size, kx.size), complex)
-    front, behind = z <= 0, z >= s.thickness
+    front, behind = z <= 0, z + ON_FACE * np.abs(z) >= s.thickness
     inside = ~front & ~behind
     kz = s.kz_before(kx)[0]
     launch = propagation(kz, -z0)
@@ -129,7 +130,7 @@ def total_pressure(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float) -> 
         rows = np.flatnonzero(behind)
         for i in range(0, rows.size, AT_A_TIME):
             part = rows[i : i + AT_A_TIME]
-            out[part] = _behind(s, kx, response, z[part] - s.thickness, "p") * launch
+            out[part] = _behind(s, kx, response, np.maximum(z[part] - s.thickness, 0.0), "p") * launch
     return out
 
 
