@@ -123,10 +123,10 @@ def period_of(values: SegmentValues) -> tuple[float, float, float]:
 
 
 def places_of(values: SegmentValues, depth: np.ndarray) -> Places:
-    """Places of depths behind the segment's near face; those on a face, to their last places, lie behind it."""
+    """Places of depths behind the segment's near face; those on a membrane, to their last places, lie behind it."""
     layers, periods = values
     faces = np.concatenate([[0.0], np.cumsum(layers.thickness)])
-    near = ON_FACE * np.abs(depth)
+    near = ON_FACE * np.abs(depth) if np.any(layers.thickness == 0) else 0.0
     period = np.clip(np.floor((depth + near) / faces[-1]).astype(int), 0, periods - 1)
     offset = depth
     for part in period_of(values):
