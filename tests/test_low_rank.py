@@ -93,7 +93,9 @@ def test_planes_made_of_others_never_bring_an_error_above_rtol(monkeypatch):
     monkeypatch.setattr(
         contour_choice,
         "choose_contour",
-        lambda *given: choose(*given)._replace(budget=contour_error.uniform_budget(1, 0.9999e-8 / 7)),
+        lambda *given: choose(*given)._replace(
+            budget=contour_error.uniform_budget(1, 0.9999e-8 / len(contour_error.ErrorBudget._fields))
+        ),
     )
     assert bp.field(slab, beam, 2500.0, x, z).error_estimate <= 1e-8
 
