@@ -5,7 +5,7 @@ import pytest
 from sided import BULK, K0, RHO, F
 
 import beamprop as bp
-from beamprop.contour import paths, sums, survey
+from beamprop.contour import error, paths, search, sums, survey
 from beamprop.response.sampled_slab import sample
 from beamprop.sources.angles import AngleInterpolation, single
 
@@ -121,3 +121,21 @@ def test_a_wide_tilted_beam_has_no_plane_waves_near_the_normal():
     assert single(beam.at_angle(-30)).low(K0, 1e-12) == pytest.approx(low, rel=1e-6)
     assert AngleInterpolation(beam, np.array([-30.0, 30.0])).low(K0, 1e-12) == 0
     assert single(beam.at_angle(0)).low(K0, 1e-12) == 0
+
+
+def test_a_wide_tilted_beam_takes_its_own_plane_waves_alone(monkeypatch):
+    """730 wavelengths wide at 60 degrees: from the normal on it took 6270."""
+    contours = []
+    compare = error.compare
+    monkeypatch.setattr(
+        error, "compare", lambda checks, pair, rtol: contours.append(pair[0]) or compare(checks, pair, rtol)
+    )
+    slab, beam = bp.Slab.uniform(bp.Fluid(2.0, 3e5), 0.3), bp.GaussianBeam(100.0, 60, z0=-0.1)
+    given = slab, beam, 2500.0, np.array([-30.0, 0.0, 20.0]), 0.5
+    p = bp.field(*given).p
+    assert contours[-1].k.size < 200
+    assert contours[-1].k.real.min() > 0.9 * contours[-1].k.real.max()
+    monkeypatch.setattr(search, "MANY_PLANE_WAVES", 10**6)
+    apart = np.abs(p - bp.field(*given).p).max()
+    assert contours[-1].k.size > 5000
+    assert apart < 1e-8 * np.abs(p).max()

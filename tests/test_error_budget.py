@@ -59,11 +59,11 @@ def test_errors_of_a_sum_are_added_over_its_largest():
 
 
 def test_a_lower_rtol_is_a_share_of_what_was_missed():
-    assert summed.closer(1e-9, 1e-8, 1e-8) is None
-    assert summed.closer(math.nan, 1e-8, 1e-8) is None
-    assert summed.closer(1e-7, 1e-8, 1e-8) == pytest.approx(3e-10)
-    assert summed.closer(1.0, 1e-8, 1e-8) == summed.LEAST
-    assert summed.closer(1.0, 1e-8, summed.LEAST) is None
+    assert summed.lower_rtol(1e-9, 1e-8, 1e-8) is None
+    assert summed.lower_rtol(math.nan, 1e-8, 1e-8) is None
+    assert summed.lower_rtol(1e-7, 1e-8, 1e-8) == pytest.approx(3e-10)
+    assert summed.lower_rtol(1.0, 1e-8, 1e-8) == summed.LEAST
+    assert summed.lower_rtol(1.0, 1e-8, summed.LEAST) is None
 
 
 def test_beams_between_take_the_terms_of_the_worse_neighbour():

@@ -33,10 +33,12 @@ SHRINKS, LOSSLESS_SHRINKS = 6, 2
 #: After more plans than this in a row that do not halve the error it is given up: 0.6^3 times as deep, a contour magnifies rounding by
 #: exp(0.2 DEEPEST) = 6 at most.
 MOST_IN_VAIN = 3
-#: An error that rounding does not make, 1e4 times that of a response, and by how much steeper a contour leaves the origin then: poles of layers
-#: that are ten times as fast as the medium in front lie a tenth of its wavenumber from the origin, above a contour that has hardly bent there.
+#: Where a wider window does not help, an error above NO_ROUNDING, a plain choice far above rounding times exp(DEEPEST) = 3e3, is one of poles
+#: that the contour passes closely: those of layers ten times as fast as the medium in front lie a tenth of its wavenumber from the origin,
+#: where the contour has hardly bent. It leaves the origin STEEPER then.
 NO_ROUNDING, STEEPER = 1e-3, 8.0
-#: By how much finer nodes are graded towards the origin where neither does: the error of a pole by their side falls to its 1.6th power.
+#: Likewise nodes are graded so much finer towards the origin beside a pole that has a circle: its error exp(-2 pi distance/step) falls to the
+#: 1.6th power.
 FINER = 1.6
 #: Above this an estimate does not tell by how many decades images have to fall.
 MEANINGLESS = 1e6
@@ -51,19 +53,18 @@ class Attempts(NamedTuple):
     wider: bool = (
         False  #: whether the window of the last plan was wider than that before: a band alone says nothing of windows
     )
-    closer: bool = False  #: whether the last plan was changed near the origin alone
+    near_origin: bool = False  #: whether the last plan was changed near the origin alone
     circled: bool = False  #: whether the last plan's contour passes by poles on its wrong side
 
     def after(self, worst: float, smallest: float) -> Attempts:
         """The attempts after a plan with the error `worst`; `smallest` is the least of the plans before it, inf for the first."""
-        in_vain = self.in_vain + (not self.closer) if worst > 0.5 * smallest else 0
+        in_vain = self.in_vain + (not self.near_origin) if worst > 0.5 * smallest else 0
         return self._replace(made=self.made + 1, in_vain=in_vain)
 
     def before(self, plan: BentPlan, last: BentPlan) -> Attempts:
         """The attempts before a plan that follows the last one."""
-        return self._replace(
-            wider=plan.window > last.window, closer=(plan.bend, plan.grading) != (last.bend, last.grading)
-        )
+        near_origin = (plan.bend, plan.grading) != (last.bend, last.grading)
+        return self._replace(wider=plan.window > last.window, near_origin=near_origin)
 
 
 def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rtol: float) -> BentPlan | None:
@@ -87,16 +88,13 @@ def next_plan(plan: BentPlan, worst: float, edge: float, attempts: Attempts, rto
         return None
     if edge > error.SHARE * rtol:
         return plan._replace(band=plan.band * 1.5)
-    if attempts.in_vain and (attempts.wider or attempts.closer):  # a wider window does not help
-        if not attempts.closer and worst > NO_ROUNDING and plan.bend > 2 * plan.depth / SLOPE:
-            return plan._replace(
-                bend=max(plan.depth / SLOPE, plan.bend / STEEPER)
-            )  # poles of fast layers, near the origin
-        if (
-            not attempts.closer and attempts.circled and plan.grading
-        ):  # a pole between the axis and the contour, beside both
+    if attempts.in_vain and (attempts.wider or attempts.near_origin):  # a wider window does not help
+        # poles beside the contour near the origin, or else rounding, magnified by exp(depth X)
+        if not attempts.near_origin and worst > NO_ROUNDING and plan.bend > 2 * plan.depth / SLOPE:
+            return plan._replace(bend=max(plan.depth / SLOPE, plan.bend / STEEPER))
+        if not attempts.near_origin and attempts.circled and plan.grading:
             return plan._replace(grading=plan.grading * FINER)
-        return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)  # rounding, magnified by exp(depth X)
+        return plan._replace(depth=plan.depth * 0.6, window=plan.window * 1.3)
     more = math.log(min(worst, MEANINGLESS) / (error.SHARE * rtol)) / plan.depth  # images fall as exp(-depth W)
     return plan._replace(window=plan.window + min(max(more, 0.5 * plan.window), plan.window))
 

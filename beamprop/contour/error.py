@@ -245,7 +245,7 @@ def _source_rounding(k0: float, sources: AngleInterpolation, first: Sampled) -> 
     return 4 * np.nan_to_num(np.max(bounds, axis=0), posinf=0.0)  # of 1e4 normal deviates the largest is 4
 
 
-#: Wavenumbers at which noise beyond the end of a contour is counted: a plain choice, 3 % from sixty times as many for a lattice's pass band.
+#: Wavenumbers at which noise beyond the end of a contour is counted, a plain choice: a pass band there is about k0 wide.
 BEYOND = 64
 
 

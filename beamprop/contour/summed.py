@@ -48,7 +48,7 @@ def added(budgets: list[ErrorBudget], scales: Scales) -> ErrorBudget:
     return budget.taken((np.arange(worst.size), worst))
 
 
-def closer(worst: float, rtol: float, made_with: float) -> float | None:
+def lower_rtol(worst: float, rtol: float, made_with: float) -> float | None:
     """The lower rtol with which the fields of a sum that misses rtol have to be made.
 
     None where the sum keeps it, and where its fields were made with the least already.

@@ -96,7 +96,7 @@ class PreparedSum:
             if self.wider is None:
                 return uniform_budget(out.shape[0], np.nan)
             budget = summed.added(budgets, scales.larger(self.wider.taken(angles, planes)))
-            lower = summed.closer(float(budget.total.max()), self.question.rtol, self.made_with)
+            lower = summed.lower_rtol(float(budget.total.max()), self.question.rtol, self.made_with)
             if lower is None:
                 return budget
             self._make(lower)

@@ -55,32 +55,32 @@ def peak_of(profile: Sampled) -> Peak:
     return Peak(_farthest(profile.plane, walked), float(sizes.max()), True)
 
 
-class _Bent(NamedTuple):
+class _Curvature(NamedTuple):
     """Half of |p|^2, its gradient and second derivatives at places, and principal directions, the one of the sharpest maximum first."""
 
     half_square: np.ndarray  #: (P,)
     slope: np.ndarray  #: (P, 2)
     second: np.ndarray  #: (P, 2, 2)
-    bends: np.ndarray  #: (P, 2)
+    curvatures: np.ndarray  #: (P, 2)
     directions: np.ndarray  #: (P, 2, 2), the last axis counts them
 
 
-def _bent(plane: Plane | PlaneOfSum, places: np.ndarray) -> _Bent:
+def _curvature(plane: Plane | PlaneOfSum, places: np.ndarray) -> _Curvature:
     p, p_x, p_y, p_xx, p_xy, p_yy = plane.taylor(places, 2)
     slope = np.real(np.conj(p) * np.stack([p_x, p_y])).T
     xx, xy, yy = (
         np.real(np.conj(a) * b + np.conj(p) * c) for a, b, c in ((p_x, p_x, p_xx), (p_x, p_y, p_xy), (p_y, p_y, p_yy))
     )
     second = np.moveaxis(np.array([[xx, xy], [xy, yy]]), -1, 0)
-    return _Bent(np.abs(p) ** 2 / 2, slope, second, *np.linalg.eigh(second))
+    return _Curvature(np.abs(p) ** 2 / 2, slope, second, *np.linalg.eigh(second))
 
 
 def _maxima(plane: Plane | PlaneOfSum, places: np.ndarray, spacing: np.ndarray) -> np.ndarray:
     """Maxima of |p|^2 within a sample of places (P, 2); along a ring, where it has none, they stay near where they began."""
     begin = places
     for _ in range(NEWTON):
-        bent = _bent(plane, places)
-        moved = np.clip(places + _uphill(bent, 2), begin - spacing, begin + spacing)
+        at = _curvature(plane, places)
+        moved = np.clip(places + _uphill(at, 2), begin - spacing, begin + spacing)
         still = bool(np.all(np.abs(moved - places) <= SETTLED * spacing))
         places = moved
         if still:
@@ -89,20 +89,20 @@ def _maxima(plane: Plane | PlaneOfSum, places: np.ndarray, spacing: np.ndarray) 
     return np.clip(_onto_ring(plane, places), begin - spacing, begin + spacing)
 
 
-def _uphill(bent: _Bent, count: int) -> np.ndarray:
+def _uphill(at: _Curvature, count: int) -> np.ndarray:
     """Newton's step in the first principal directions along which |p|^2 has a maximum: (P, 2)."""
-    along = np.einsum("pid,pi->pd", bent.directions, bent.slope)
-    concave = bent.bends < 0
+    along = np.einsum("pid,pi->pd", at.directions, at.slope)
+    concave = at.curvatures < 0
     concave[:, count:] = False
     return np.asarray(
-        np.einsum("pid,pd->pi", bent.directions, np.where(concave, -along / np.where(concave, bent.bends, 1.0), 0.0))
+        np.einsum("pid,pd->pi", at.directions, np.where(concave, -along / np.where(concave, at.curvatures, 1.0), 0.0))
     )
 
 
 def _onto_ring(plane: Plane | PlaneOfSum, places: np.ndarray) -> np.ndarray:
     """Places moved to where |p| is largest across the line on which it changes least."""
     for _ in range(ACROSS):
-        places = places + _uphill(_bent(plane, places), 1)
+        places = places + _uphill(_curvature(plane, places), 1)
     return places
 
 
@@ -110,12 +110,12 @@ def _around_ring(plane: Plane | PlaneOfSum, start: np.ndarray, least: float, spa
     """Places (n, 2) all along a closed line through `start` on which |p| >= least and largest across it; None where there is none."""
     shortest = STRIDE * float(spacing.min())
     places = [start]
-    heading = _bent(plane, start[None]).directions[0, :, 1]
+    heading = _curvature(plane, start[None]).directions[0, :, 1]
     stride, bend, turned = shortest, 0.0, 0.0
     for _ in range(STEPS):
         ahead = places[-1] + stride * _turned(heading, bend * stride / 2)
         (placed,) = _onto_ring(plane, ahead[None])
-        here = _bent(plane, placed[None])
+        here = _curvature(plane, placed[None])
         along = here.directions[0, :, 1]
         along = along if along @ heading >= 0 else -along
         turn = math.atan2(heading[0] * along[1] - heading[1] * along[0], heading @ along)
@@ -145,8 +145,8 @@ def _farthest(plane: Plane | PlaneOfSum, ring: np.ndarray) -> np.ndarray:
     for _ in range(VERTICES):
         three = np.stack([np.full(3, x), y + apart * np.array([-1.0, 0.0, 1.0])], axis=1)
         for _ in range(2 * ACROSS):  # along x, which is across the ring there
-            bent = _bent(plane, three)
-            three[:, 0] -= bent.slope[:, 0] / bent.second[:, 0, 0]
+            at = _curvature(plane, three)
+            three[:, 0] -= at.slope[:, 0] / at.second[:, 0, 0]
         (before, x, behind) = three[:, 0]
         y += apart * (behind - before) / (4 * x - 2 * (before + behind))
     return np.array([x, y])

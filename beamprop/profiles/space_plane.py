@@ -224,7 +224,7 @@ def sampled(s: SampledSlab, source: Any, way: Way, window: Window, rtol: float) 
     while True:
         profile, scales, budgets = _sum_in(s, source, way, window, made_with)
         budget = summed.added(budgets, scales if wider is None else scales.larger(wider))
-        lower = summed.closer(float(budget.total.max()), rtol, made_with)
+        lower = summed.lower_rtol(float(budget.total.max()), rtol, made_with)
         if lower is None:
             return profile._replace(plane=profile.plane._replace(budget=budget))
         made_with = lower

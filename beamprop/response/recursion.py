@@ -15,7 +15,8 @@ from .layer import Entire, State, layer_back, normalised, several_layers
 from .periods import BlochPhase, bloch_phase, power_back
 from .solid_run import run_back
 
-#: A depth so near in front of a face, over the depth, lies on it: rounding may not decide on which side of a membrane, over which p jumps.
+#: A depth so near in front of a face, over the depth, is on it, for depths are known to a few units of the last place: rounding may not decide
+#: on which side of a membrane, over which p jumps, nor in which layer, whose v_x differ, it lies.
 ON_FACE = 8 * float(np.finfo(float).eps)
 
 

@@ -17,8 +17,6 @@ from .recursion import ON_FACE
 from .sampled_slab import SampledSlab
 from .slab import Response
 
-#: How far behind a depth v_x is taken, over the depth: a depth on an interface is known to a few units of the last place.
-AT_INTERFACE = 8 * float(np.finfo(float).eps)
 #: Planes behind the slab whose waves are formed at a time: beside many planes no second array as large is held.
 AT_A_TIME = 16
 
@@ -141,7 +139,7 @@ def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, qu
     behind z. v_z is continuous.
     """
     out = np.empty((z.size, kx.size), complex)
-    at = z + AT_INTERFACE * np.maximum(np.abs(z), s.thickness) if quantity == "v_x" else z
+    at = z + ON_FACE * np.maximum(np.abs(z), s.thickness) if quantity == "v_x" else z
     front, behind = at <= 0, at >= s.thickness
     inside = ~front & ~behind
     response = s.response(kx, at[inside], quantity)
@@ -157,10 +155,8 @@ def _total_velocity(s: SampledSlab, kx: np.ndarray, z: np.ndarray, z0: float, qu
             out[inside] = response.inside[0] * launch
         if behind.any():
             out[behind] = _behind(s, kx, response, np.maximum(z[behind] - s.thickness, 0.0), quantity) * launch
-        if (
-            quantity == "s_xz" and not s.far_face_shears
-        ):  # no more than the rounding of its P and its S wave, which cancel there
-            out[np.abs(z - s.thickness) <= AT_INTERFACE * s.thickness] = 0
+        if quantity == "s_xz" and not s.far_face_shears:  # P and S waves cancel there, to their rounding
+            out[np.abs(z - s.thickness) <= ON_FACE * s.thickness] = 0
     return out
 
 
