@@ -6,12 +6,15 @@ The response of a slab is the accuracy study's cascade of scattering matrices, a
 * `tensor_field`: kx and ky both on a bent contour of their own.
 * `rayleigh_field`: Rayleigh's first integral in a homogeneous fluid, over the launch plane.
 * `round_profile`: p(r) of a circular beam along the normal, at complex radii too: a tilted one is the same, moved to complex places.
+* `peak_and_widths`, `area_of_samples`: what such fields measure.
 """
 
 from __future__ import annotations
 
 import numpy as np
 from accuracy_study.reference.medium import Medium
+from scipy.ndimage import label
+from scipy.optimize import brentq, minimize
 from scipy.special import jv
 
 
@@ -103,3 +106,18 @@ def round_profile(slab, frequency, beam, radius, z, depth=3.0, panels=60):
     return medium.response(k, np.asarray(z, float), source.z0) @ (
         strength[:, None] * jv(0, np.multiply.outer(k, radius))
     )
+
+
+def peak_and_widths(size, start):
+    """The largest |p| of size(x, y) near a place, and its half widths along x and y, by a general optimiser and root finder."""
+    best = minimize(lambda v: -size(*v), start, method="Nelder-Mead", options={"xatol": 1e-7, "fatol": 1e-14})
+    x, y = best.x
+    cuts = (lambda t: size(x + t, y) + best.fun / 2), (lambda t: size(x, y + t) + best.fun / 2)
+    return -best.fun, [brentq(cut, 0.0, 0.3, xtol=1e-10) - brentq(cut, -0.3, 0.0, xtol=1e-10) for cut in cuts]
+
+
+def area_of_samples(p, x, y, level=0.5):
+    """Of the samples connected to the largest |p| on which |p| is level times it or more, each counted as its cell."""
+    size = np.abs(p)
+    numbered, _ = label(size >= level * size.max())
+    return np.count_nonzero(numbered == numbered.ravel()[size.argmax()]) * (x[1] - x[0]) * (y[1] - y[0])

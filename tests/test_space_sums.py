@@ -8,7 +8,6 @@ import space_oracles as oracles
 from scipy.optimize import brentq, minimize
 from scipy.special import j0, j1
 from test_space_measures import Layer
-from test_space_widths import area_of_samples
 
 import beamprop as bp
 from beamprop.profiles.space_plane import Way, Window, sampled
@@ -63,13 +62,8 @@ def test_widths_of_two_beams_against_a_polar_quadrature():
     def size(x, y):
         return abs(p(x, y)[0])
 
-    best = minimize(
-        lambda v: -size(*v), ds.centroid_out.values, method="Nelder-Mead", options={"xatol": 1e-7, "fatol": 1e-14}
-    )
-    x, y = best.x
-    assert float(ds.peak_out) == pytest.approx(-best.fun, rel=1e-9)
-    cuts = (lambda t: size(x + t, y) + best.fun / 2), (lambda t: size(x, y + t) + best.fun / 2)
-    widths = [brentq(cut, 0.0, 0.3, xtol=1e-10) - brentq(cut, -0.3, 0.0, xtol=1e-10) for cut in cuts]
+    peak, widths = oracles.peak_and_widths(size, ds.centroid_out.values)
+    assert float(ds.peak_out) == pytest.approx(peak, rel=1e-9)
     assert ds.fwhm_out.values == pytest.approx(widths, rel=1e-6)
 
 
@@ -78,7 +72,7 @@ def test_areas_of_two_beams_are_those_of_many_samples():
     middle, half = ds.centroid_out.values, 0.8 * ds.fwhm_out.values.max()
     x, y = (m + half * np.linspace(-1, 1, 901) for m in middle)
     p = bp.field(LOSSY, PAIR, FREQUENCY, x, LOSSY.thickness, y=y, rtol=1e-6).p.values
-    assert float(ds.area_out) == pytest.approx(area_of_samples(p, x, y), rel=2e-3)
+    assert float(ds.area_out) == pytest.approx(oracles.area_of_samples(p, x, y), rel=2e-3)
 
 
 @pytest.mark.parametrize("width_of", ["pressure", "intensity"])
@@ -161,7 +155,7 @@ def test_measures_of_launched_beams_are_those_of_their_profile():
     direction = np.degrees(np.arctan2(*axes[::-1, 1]))
     assert (float(ds.orientation) - direction + 90) % 180 - 90 == pytest.approx(0, abs=1e-5)
     assert float(ds.peak) == pytest.approx(np.abs(p).max(), rel=1e-4)
-    assert float(ds.area) == pytest.approx(area_of_samples(p, x, x), rel=5e-3)
+    assert float(ds.area) == pytest.approx(oracles.area_of_samples(p, x, x), rel=5e-3)
 
 
 def test_the_ray_of_a_sum_starts_in_the_middle_of_its_sources():

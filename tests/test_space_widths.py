@@ -5,8 +5,7 @@ import warnings
 import numpy as np
 import pytest
 import space_oracles as oracles
-from scipy.ndimage import label
-from scipy.optimize import brentq, minimize
+from scipy.optimize import brentq
 
 import beamprop as bp
 
@@ -18,13 +17,6 @@ ELLIPSE = bp.GaussianBeam((0.3, 0.15), 45, 0.02, -0.1, azimuth=30.0, y0=-0.03)
 WATER = bp.Fluid.from_speed(1000.0, 1500.0)
 PLATE = bp.Slab.uniform(bp.Fluid.from_speed(1900.0, 2800.0), 0.0065, background=WATER)
 MHZ = 0.5e6
-
-
-def area_of_samples(p, x, y, level=0.5):
-    """Of the samples connected to the largest |p| on which |p| is level times it or more, each counted as its cell."""
-    size = np.abs(p)
-    numbered, _ = label(size >= level * size.max())
-    return np.count_nonzero(numbered == numbered.ravel()[size.argmax()]) * (x[1] - x[0]) * (y[1] - y[0])
 
 
 # --- what is known ----------------------------------------------------------------------------------------
@@ -68,12 +60,8 @@ def test_a_tilted_ellipse_against_a_polar_quadrature():
             oracles.polar_field(LOSSY, FREQUENCY, ELLIPSE, at, [LOSSY.thickness], panels=16, directions=120)[0, 0]
         )
 
-    exact = {"xatol": 1e-7, "fatol": 1e-14}
-    best = minimize(lambda v: -size(*v), ds.centroid_out.values, method="Nelder-Mead", options=exact)
-    x, y = best.x
-    assert float(ds.peak_out) == pytest.approx(-best.fun, rel=1e-9)
-    cuts = (lambda t: size(x + t, y) + best.fun / 2), (lambda t: size(x, y + t) + best.fun / 2)
-    widths = [brentq(cut, 0.0, 0.3, xtol=1e-10) - brentq(cut, -0.3, 0.0, xtol=1e-10) for cut in cuts]
+    peak, widths = oracles.peak_and_widths(size, ds.centroid_out.values)
+    assert float(ds.peak_out) == pytest.approx(peak, rel=1e-9)
     assert ds.fwhm_out.values == pytest.approx(widths, rel=1e-6)
 
 
@@ -86,7 +74,7 @@ def test_where_guided_lobes_join_the_area_is_that_of_all():
     ds = bp.beam_width(slab, beam, FREQUENCY)
     x, y = np.linspace(-0.5, 0.5, 1001), np.linspace(-0.3, 0.3, 601)
     p = bp.field(slab, beam, FREQUENCY, x, slab.thickness, y=y).p.values
-    assert float(ds.area_out) == pytest.approx(area_of_samples(p, x, y), rel=2e-3)
+    assert float(ds.area_out) == pytest.approx(oracles.area_of_samples(p, x, y), rel=2e-3)
 
 
 def test_an_arc_is_not_what_rays_from_its_peak_see():
@@ -98,7 +86,7 @@ def test_an_arc_is_not_what_rays_from_its_peak_see():
     ds = bp.beam_width(THIN, source, FREQUENCY, rtol=1e-4, air_distance=1e-9)
     fine = np.linspace(-0.2, 0.2, 1001)
     q = bp.field(THIN, source, FREQUENCY, fine, 1e-10, y=fine, rtol=1e-5).p.values
-    assert float(ds.area_out) == pytest.approx(area_of_samples(q, fine, fine), rel=2e-3)
+    assert float(ds.area_out) == pytest.approx(oracles.area_of_samples(q, fine, fine), rel=2e-3)
     row, column = np.unravel_index(np.abs(q).argmax(), q.shape)
     angles, along = np.linspace(0, 2 * np.pi, 720, endpoint=False), np.arange(0, 0.19, 2e-4)[:, None]
     places = fine[row] + along * np.sin(angles), fine[column] + along * np.cos(angles)
@@ -115,7 +103,7 @@ def test_areas_are_those_of_many_samples(slab, beam):
     middle, half = ds.centroid_out.values, 0.8 * ds.fwhm_out.values.max()
     x, y = (m + half * np.linspace(-1, 1, 901) for m in middle)
     p = bp.field(slab, beam, FREQUENCY, x, slab.thickness, y=y, rtol=1e-6).p.values
-    assert float(ds.area_out) == pytest.approx(area_of_samples(p, x, y), rel=2e-3)
+    assert float(ds.area_out) == pytest.approx(oracles.area_of_samples(p, x, y), rel=2e-3)
 
 
 # --- symmetries and limits --------------------------------------------------------------------------------

@@ -42,7 +42,7 @@ def grids() -> dict[str, dict[str, Any]]:
 
 
 def windows_aside() -> dict[str, tuple[bp.Slab, bp.GaussianBeam, dict[str, Any], float]]:
-    """Slab, beam, grid and rtol of windows 300 wavelengths aside: several kinds, long contours among them."""
+    """Slab, beam, grid and rtol of windows 300 wavelengths aside: several kinds, long contours among them; a long one, and one at 730 wavelengths."""
     air, narrow = bp.Slab.uniform(bp.AIR, 0.5), bp.GaussianBeam(0.1, 80, z0=-0.1)
     x, y = np.linspace(41, 45, 100), np.linspace(-2, 2, 100)
     return {
@@ -56,6 +56,13 @@ def windows_aside() -> dict[str, tuple[bp.Slab, bp.GaussianBeam, dict[str, Any],
             1e-8,
         ),
         "4 m x 4 m in air, rtol 1e-11": (air, narrow, {"x": x, "z": 3.0, "y": y}, 1e-11),
+        "20 m x 0.5 m behind the slab": (SLAB, narrow, {"x": np.linspace(41, 61, 100), "z": 1.2, "y": y / 8}, 1e-8),
+        "3 m x 3 m, 100 m aside in air, rtol 1e-11": (
+            air,
+            narrow,
+            {"x": np.linspace(100, 103, 100), "z": 3.0, "y": 0.75 * y},
+            1e-11,
+        ),
     }
 
 
