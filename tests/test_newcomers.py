@@ -38,6 +38,15 @@ def test_a_metal_by_its_name_is_a_fluid_with_a_hint(tmp_path):
         assert "taken as a fluid" not in good("scattering", "--layer", layer, *off).stderr
 
 
+@pytest.mark.filterwarnings("ignore::beamprop.HintWarning")
+def test_what_shear_waves_of_a_metal_change():
+    """The numbers of docs/pitfalls.md."""
+    for steel, known in ((bp.material("steel"), 3e-5), (bp.Solid.from_material("steel"), 0.84)):
+        plate = bp.Slab(bp.Layer(steel, 5e-3), background=bp.material("water"))
+        size = float(abs(bp.scattering(plate, 1e6, angle=30.0).t))
+        assert float(f"{size:.0e}" if size < 1e-3 else f"{size:.2f}") == known
+
+
 WATER_AROUND, STEEL = bp.material("water"), bp.material("steel")
 
 
